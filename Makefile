@@ -1,0 +1,45 @@
+# A thin front of the CMake presets. On a Debian machine `make demo` and `make check` install what is missing.
+SHELL := /bin/bash
+
+# What building, drawing and testing need.
+PACKAGES := g++ cmake ninja-build pkg-config git \
+  libglm-dev libtinygltf-dev libstb-dev libtbb-dev libhwy-dev libcli11-dev nlohmann-json3-dev libmeshoptimizer-dev \
+  libdeflate-dev libpng-dev libxxhash-dev libgtest-dev libbenchmark-dev librapidcheck-dev
+# What `make check` needs besides.
+CHECK_PACKAGES := clang clang-format clang-tidy libclang-rt-14-dev assimp-testmodels xxhash
+# What `make bench` needs besides: gnuplot draws its pictures.
+BENCH_PACKAGES := gnuplot-nox
+
+.PHONY: help build demo check check-all bench format packages check-packages bench-packages
+
+help:
+	@echo "make demo       install what is missing, build, draw the demonstration frames into out/"
+	@echo "make build      the program (build/release/apps/limn) and the bench programs (build/release/bench)"
+	@echo "make check      formatting, clang-tidy, the tests with g++ and clang++, the sanitizers"
+	@echo "make check-all  the full matrix: compilers, optimisation levels, long fuzzing"
+	@echo "make bench      the benchmarks"
+
+# $(call install,LIST): quick where everything is there.
+define install
+	@missing=""; for p in $(1); do \
+	  dpkg-query -W -f='$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$p"; done; \
+	if [ -n "$$missing" ]; then \
+	  echo "limn: installing$$missing"; \
+	  if [ "$$(id -u)" = 0 ]; then sudo=; else sudo=sudo; fi; \
+	  $$sudo apt-get update -q >/dev/null && \
+	  DEBIAN_FRONTEND=noninteractive $$sudo apt-get install -y -q --no-install-recommends $$missing >/dev/null || \
+	  { echo "limn: could not install the packages; as root: apt-get install$$missing" >&2; exit 1; }; fi
+endef
+
+packages:
+	$(call install,$(PACKAGES))
+check-packages: packages
+	$(call install,$(CHECK_PACKAGES))
+bench-packages: packages
+	$(call install,$(BENCH_PACKAGES))
+
+# $(call compile,PRESET,TARGETS)
+compile = cmake --preset $(1) --log-level=WARNING >/dev/null && cmake --build --preset $(1) $(if $(2),--target $(2)) | tail -n 1
+
+build: packages
+	@$(call compile,release)

@@ -1,0 +1,34 @@
+// Two tiers of checks (the third, a user's mistake, is a message of the program):
+//   limn::require(...)  a caller's mistake: throws std::invalid_argument at a public function's entry
+//   LIMN_ASSERT(...)    what cannot happen: prints its values and aborts; compiled out with NDEBUG
+#pragma once
+
+#include <source_location>
+#include <string_view>
+
+namespace limn {
+
+/// Throws std::invalid_argument("FUNCTION: what") unless `holds`.
+void require(bool holds, std::string_view what,
+             const std::source_location& where = std::source_location::current());
+
+namespace detail {
+[[noreturn]] void assertionFailed(const char* condition, const char* file, int line, const double* values,
+                                  int count);
+template <class... T>
+[[noreturn]] void assertionFailed(const char* condition, const char* file, int line, T... values) {
+  const double array[] = {0.0, static_cast<double>(values)...};
+  assertionFailed(condition, file, line, array + 1, static_cast<int>(sizeof...(values)));
+}
+}  // namespace detail
+
+}  // namespace limn
+
+/// LIMN_ASSERT(condition, value...): the numbers named after the condition are printed when it fails.
+#ifdef NDEBUG
+#define LIMN_ASSERT(condition, ...) static_cast<void>(0)
+#else
+#define LIMN_ASSERT(condition, ...)    \
+  ((condition) ? static_cast<void>(0)  \
+               : ::limn::detail::assertionFailed(#condition, __FILE__, __LINE__ __VA_OPT__(, ) __VA_ARGS__))
+#endif

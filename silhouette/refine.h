@@ -1,0 +1,103 @@
+// The refined triangle stream of a mesh for one viewpoint, by any of the methods.
+//
+//   limn::silhouette::Topology topology(mesh);                    // once, or once per change of the indices
+//   limn::silhouette::Refiner refiner(mesh, topology, workers);   // keeps what does not change from view to view
+//   refiner.refine(view, parameters, stream);                     // per frame
+//   refiner.deform(mesh) before refine() when positions and normals have changed
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "raster/base/workers.h"
+#include "silhouette/mesh.h"
+#include "silhouette/topology.h"
+
+namespace limn::silhouette {
+
+enum class Method { kFlat, kPatches, kCurves, kPn };
+enum class Silhouetteness { kEdge, kContour };  ///< methods/1, equations (1) and the third choice of 1.1
+enum class Tangents { kProjected, kCircular, kGeodesic };
+enum class ShadingNormals { kLinear, kQuadratic };
+
+/// How to refine. The defaults are those of the program.
+struct Parameters {
+  Method method = Method::kPatches;
+  float tolerance = 0.25f;  ///< guaranteed distance in pixels, >= 0; used when segments == 0
+  int segments = 0;         ///< fixed count per edge, 1 … kMaxSegments; 0 = from the tolerance
+  float beta = 0.25f;       ///< constant β of (2), >= 0
+  float wedgeDegrees = 0;   ///< > 0: β per edge from the wedge angle φ, (3)
+  Silhouetteness silhouetteness = Silhouetteness::kEdge;
+  Tangents tangents = Tangents::kProjected;
+  bool robust = true;       ///< limited ends, methods/1 section 1.6
+  bool features = true;     ///< feature edges smooth from every viewpoint
+  bool boundaries = false;  ///< boundary edges likewise
+  ShadingNormals shadingNormals = ShadingNormals::kLinear;
+};
+
+inline constexpr int kMaxSegments = 64;  ///< per edge; past it the tolerance is no longer guaranteed
+
+/// Where a new vertex lies on the coarse mesh, for whatever attributes the caller interpolates: the source triangle and
+/// the weights of its corners 1 and 2 (corner 0 has the rest). On an edge whose faces share both end vertices one vertex
+/// serves both faces; across a seam each face has its own, at the same position bit for bit.
+struct Origin {
+  std::uint32_t triangle = 0;
+  glm::vec2 weights{0.0f};
+};
+
+/// Triangles that replace some of the mesh's. Everything that is not replaced is drawn as it is.
+struct RefinedStream {
+  std::vector<glm::vec3> positions;  ///< of new vertices, model space
+  std::vector<glm::vec3> normals;    ///< unit
+  std::vector<Origin> origins;
+  /// Three per triangle. Below mesh.positions.size(): a vertex of the mesh; from there on: a new one.
+  std::vector<std::uint32_t> indices;
+  std::vector<std::uint32_t> sourceTriangles;  ///< one per triangle, ascending
+  std::vector<std::uint64_t> replaced;         ///< bit per mesh triangle, triangleCount/64 rounded up words
+
+  std::size_t triangleCount() const { return indices.size() / 3; }
+  bool isReplaced(std::size_t triangle) const { return (replaced[triangle / 64] >> (triangle % 64) & 1) != 0; }
+  void clear(std::size_t meshTriangles);
+
+  /// Indices in range, order ascending, replaced bits match the source triangles, all numbers finite.
+  bool isConsistent(const Mesh& mesh) const;
+};
+
+/// Per frame: what the refinement did and saw; for overlays, `limn refine --alpha` and statistics.
+struct RefineReport {
+  std::size_t curvedTriangles = 0;     ///< of the mesh, replaced
+  std::size_t refinedTriangles = 0;    ///< in the stream
+  std::size_t smoothEdges = 0;         ///< alpha > 0
+  std::size_t cappedEdges = 0;         ///< wanted more than kMaxSegments segments
+  double classifyMs = 0, refineMs = 0;
+};
+
+class Refiner {
+ public:
+  /// Borrows mesh arrays and topology for as long as it lives.
+  Refiner(const Mesh& mesh, const Topology& topology, Workers& workers);
+  ~Refiner();
+  Refiner(Refiner&&) noexcept;
+  Refiner& operator=(Refiner&&) noexcept;
+
+  /// New positions and normals, same counts and indices. What depends on them is computed anew by the next refine().
+  void deform(const Mesh& mesh);
+
+  /// Refines for a view. The same bits for any number of threads. Throws std::invalid_argument for parameters outside
+  /// their ranges.
+  void refine(const View& view, const Parameters& parameters, RefinedStream& stream, RefineReport* report = nullptr);
+
+  /// Silhouetteness of every edge in the last view refined; empty for methods that have none.
+  const std::vector<float>& alphas() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace limn::silhouette
