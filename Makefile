@@ -10,7 +10,7 @@ CHECK_PACKAGES := clang clang-format clang-tidy libclang-rt-14-dev assimp-testmo
 # What `make bench` needs besides: gnuplot draws its pictures.
 BENCH_PACKAGES := gnuplot-nox
 
-.PHONY: help build demo check check-all bench format packages check-packages bench-packages
+.PHONY: help build demo pictures check check-all bench format packages check-packages bench-packages
 
 help:
 	@echo "make demo       install what is missing, build, draw the demonstration frames into out/"
@@ -43,3 +43,33 @@ compile = cmake --preset $(1) --log-level=WARNING >/dev/null && cmake --build --
 
 build: packages
 	@$(call compile,release)
+
+demo: build
+	@build/release/apps/limn render builtin:demo --method flat -o out/demo-flat.png
+	@build/release/apps/limn render builtin:demo --method patches -o out/demo-smooth.png
+	@build/release/apps/limn render builtin:knot-480 --turntable 12 --size 640x400 -o out/knot-%02d.png
+	@echo "limn: the same coarse meshes, flat in out/demo-flat.png and smooth in out/demo-smooth.png; a turn of a knot in out/knot-*.png"
+
+# The pictures of the README and the manual.
+pictures: build
+	@build/release/bench/limn_pictures docs/pictures
+
+SOURCES = $(shell git ls-files '*.cpp' '*.h')
+
+format: check-packages
+	@clang-format -i $(SOURCES)
+
+check: check-packages
+	@clang-format --dry-run -Werror $(SOURCES)
+	@$(call compile,release)
+	@$(call compile,clang)
+	@$(call compile,sanitize)
+	@tests/same_pixels.sh build/release build/clang build/sanitize
+	@tests/tidy.sh build/clang
+	@ctest --preset clang --quiet || ctest --preset clang --rerun-failed
+	@ctest --preset sanitize --quiet || ctest --preset sanitize --rerun-failed
+	@ctest --preset release
+
+# The full matrix; the other compilers of Debian are used where they are installed.
+check-all: check
+	@tests/matrix.sh
