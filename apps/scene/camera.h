@@ -22,18 +22,33 @@ struct LookAt {
   double orthoHeight = 0.0;  ///< > 0: orthographic, this many world units high
 };
 
-/// The camera that fits `bounds` into the smaller side of the window with a margin of 5 %, seen from
-/// azimuth/elevation (degrees; azimuth 0 looks along -z, positive turns the eye to the right), magnified by `zoom`.
-/// A sphere fits exactly in perspective: the distance is radius / sin(half angle).
-LookAt frameSphere(const Sphere& bounds, int width, int height, double azimuthDegrees, double elevationDegrees,
-                   double zoom, double fovDegrees, double orthoHeight);
+/// Share of the window's smaller side that a framed sphere fills: a margin of 5 %.
+inline constexpr double kFramedShare = 0.95;
 
-/// Matrices for a window. Near and far planes just enclose `bounds` (near at least 1/4096 of far where the eye is inside).
-/// Throws std::invalid_argument for eye = target, up along the line of sight, a field of view outside (0, 180), sizes
-/// outside 1 … 16384, or numbers that are not finite.
+/// The camera that fits `bounds` into the smaller side of the window with a margin of 5 %, seen from
+/// azimuth/elevation (degrees; azimuth 0 looks along -z, positive turns the eye to the right), magnified by
+/// `zoom`. A sphere fits exactly in perspective: the distance is radius / sin(half angle). Zoom narrows the
+/// field of view and leaves the eye where it is. `orthoHeight`: 0 = perspective; > 0 = orthographic, that
+/// many world units high at zoom 1; < 0 = orthographic, fitted. A sphere of radius 0 is framed as one of
+/// radius 1. Throws std::invalid_argument for numbers that are not finite, zoom <= 0, a field of view outside
+/// (0, 180) and sizes outside 1 … 16384.
+LookAt frameSphere(const Sphere& bounds, int width, int height, double azimuthDegrees,
+                   double elevationDegrees, double zoom, double fovDegrees, double orthoHeight);
+
+/// Matrices for a window. Near and far planes enclose `bounds`, half its radius to spare on either side
+/// because curved surfaces rise above their coarse mesh (near at least 1/4096 of far where the eye is
+/// inside). Throws std::invalid_argument for eye = target, up along the line of sight, a field of view
+/// outside (0, 180), sizes outside 1 … 16384, or numbers that are not finite or beyond 1e15.
 CameraView makeCamera(const LookAt& lookAt, const Sphere& bounds, int width, int height);
 
-/// The same from a camera of the file at `nodeToWorld`.
-CameraView makeCamera(const Camera& camera, const glm::dmat4& nodeToWorld, const Sphere& bounds, int width, int height);
+/// The same from a camera of the file at `nodeToWorld`, whose scale and shear have no effect. Pixels are
+/// square: the window shows all of what the file's camera sees and, where its shape differs from the camera's
+/// aspect ratio, more at the sides or at top and bottom.
+CameraView makeCamera(const Camera& camera, const glm::dmat4& nodeToWorld, const Sphere& bounds, int width,
+                      int height);
+
+/// The rotation by `degrees` (counter-clockwise seen against the axis) about the line through `point` along
+/// `axis`. Throws std::invalid_argument for a zero axis.
+glm::dmat4 turnAbout(const glm::dvec3& point, const glm::dvec3& axis, double degrees);
 
 }  // namespace limn::scene

@@ -3,10 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "apps/scene/output_file.h"
 
 namespace limn::scene {
 
@@ -16,26 +17,48 @@ struct Image {
   std::vector<std::uint8_t> rgba;
 };
 
-/// What could not be written, with the reason and the remedy. The program ends with exit status 4.
-class OutputError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
+/// 16 bits per sample, top row first, rows without gaps: 1 (grey), 3 (RGB) or 4 (RGBA) samples per pixel.
+struct Image16 {
+  int width = 0, height = 0, channels = 1;
+  std::vector<std::uint16_t> samples;
 };
 
-/// tEXt chunks in the order given: keyword, text.
+/// Text chunks in the order given: keyword (1 … 79 characters of ASCII) and text (UTF-8).
 using TextChunks = std::vector<std::pair<std::string, std::string>>;
 
-/// PNG bytes: RGBA8, sRGB chunk, text chunks, one fixed filter, zlib level 0 … 12 (libdeflate). The same bytes for the
-/// same input everywhere.
+inline constexpr int kLargestSize = 16384;  ///< pixels, in width and in height
+inline constexpr int kHighestCompression = 12;
+
+/// PNG bytes: RGBA8, sRGB chunk, text chunks, one fixed filter, zlib level 0 … 12 (libdeflate). The same
+/// bytes for the same input everywhere. Any number of threads may encode at a time. Throws
+/// std::invalid_argument for sizes outside 1 … 16384 and other levels, std::bad_alloc.
 std::vector<std::uint8_t> encodePng(const Image& image, const TextChunks& texts, int level);
 
-/// Reads a PNG (any kind, converted to RGBA8). Throws InputError (apps/scene/load.h) naming the file.
+/// The same for 16-bit images, through libpng (zlib level 1 … 9).
+std::vector<std::uint8_t> encodePng16(const Image16& image, const TextChunks& texts, int level);
+
+/// Reads a PNG (any kind, converted to RGBA8; 16-bit samples are rounded). Throws InputError
+/// (apps/scene/load.h) naming the file: not a PNG, damaged, or larger than 16384 pixels.
 Image readPng(const std::string& path, TextChunks* texts = nullptr);
 
-/// Writes a file whole or not at all: a temporary name beside it, then a rename. Throws OutputError.
-void writeFileWhole(const std::string& path, const void* bytes, std::size_t count);
+/// The same, converted to RGBA with 16 bits per sample (8-bit samples times 257). `is16` says what the file
+/// has.
+Image16 readPng16(const std::string& path, bool* is16 = nullptr);
 
-/// 32 hexadecimal digits of XXH3-128 as xxh128sum prints it, of the RGBA8 rows.
+/// What a PNG says of itself, read without decoding it.
+struct PngSummary {
+  int width = 0, height = 0, bitDepth = 0;
+  TextChunks texts;
+};
+
+/// Walks the chunks of a PNG file and checks every checksum and the end. False if the file is missing,
+/// damaged or cut.
+bool inspectPng(const std::string& path, PngSummary& summary);
+
+/// 32 hexadecimal digits of XXH3-128 as xxh128sum prints it.
+std::string hashBytes(const void* bytes, std::size_t count);
+
+/// hashBytes of the RGBA8 rows.
 std::string pixelHash(const Image& image);
 
 }  // namespace limn::scene

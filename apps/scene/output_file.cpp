@@ -1,0 +1,212 @@
+#include "apps/scene/output_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <climits>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+namespace limn::scene {
+namespace {
+
+constexpr mode_t kFileMode = 0666;  // less the process's umask
+
+[[noreturn]] void fail(const std::string& path, const std::string& what, int error) {
+  std::string remedy;
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      remedy = "; free some space or write elsewhere";
+      break;
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      remedy = "; choose a place that you may write to";
+      break;
+    case ENOENT:
+    case ENOTDIR:
+      remedy = "; is its directory still there?";
+      break;
+    default:
+      break;
+  }
+  throw OutputError(path + ": " + what + ": " + std::generic_category().message(error) + remedy);
+}
+
+/// The temporary names in use. Signals belong to the process, so this does too.
+struct TemporaryNames {
+  std::mutex mutex;
+  std::vector<std::string> names;
+};
+TemporaryNames& temporaryNames() {
+  static TemporaryNames names;
+  return names;
+}
+
+class Descriptor {
+ public:
+  explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
+  ~Descriptor() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return descriptor_; }
+  /// Network file systems report a full disk only here.
+  int close() {
+    const int result = ::close(descriptor_);
+    descriptor_ = -1;
+    return result;
+  }
+
+ private:
+  int descriptor_;
+};
+
+/// A file under a temporary name beside its target; removed unless published.
+class NamedTemporary {
+ public:
+  explicit NamedTemporary(const std::string& target) : target_(target), name_(nameBeside(target)) {
+    TemporaryNames& registry = temporaryNames();
+    const std::lock_guard lock(registry.mutex);
+    descriptor_.emplace(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode));
+    if (descriptor_->get() < 0) fail(target_, "cannot be created", errno);
+    registry.names.push_back(name_);
+  }
+  ~NamedTemporary() {
+    if (!published_) ::unlink(name_.c_str());
+    forget();
+  }
+  NamedTemporary(const NamedTemporary&) = delete;
+  NamedTemporary& operator=(const NamedTemporary&) = delete;
+
+  int descriptor() const { return descriptor_->get(); }
+
+  void publish() {
+    if (descriptor_->close() != 0) fail(target_, "could not be written", errno);
+    if (::rename(name_.c_str(), target_.c_str()) != 0) fail(target_, "could not be put in place", errno);
+    published_ = true;
+  }
+
+  /// ".NAME.limn-PID-COUNT" in the target's directory: hidden, and unlike any name that a pattern produces.
+  static std::string nameBeside(const std::string& target) {
+    static std::atomic<unsigned> count{0};
+    const std::size_t slash = target.rfind('/');
+    const std::size_t start = slash == std::string::npos ? 0 : slash + 1;
+    return target.substr(0, start) + "." + target.substr(start, NAME_MAX - 40) + ".limn-" +
+           std::to_string(::getpid()) + "-" + std::to_string(++count);
+  }
+
+ private:
+  void forget() {
+    TemporaryNames& registry = temporaryNames();
+    const std::lock_guard lock(registry.mutex);
+    std::erase(registry.names, name_);
+  }
+
+  std::string target_, name_;
+  std::optional<Descriptor> descriptor_;
+  bool published_ = false;
+};
+
+std::string directoryOf(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) return ".";
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+/// Writes through a file that has no name until it is whole: a killed process leaves nothing behind. False
+/// where the file system or the system has no such files.
+bool writeThroughNameless(const std::string& path, const void* bytes, std::size_t count) {
+  const Descriptor file(::open(directoryOf(path).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, kFileMode));
+  if (file.get() < 0) return false;  // if the reason is another one, the named way will find it
+  writeAll(file.get(), path, bytes, count);
+
+  const std::string self = "/proc/self/fd/" + std::to_string(file.get());
+  const auto linkAs = [&](const std::string& name) {
+    return ::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  };
+  if (linkAs(path)) return true;
+  if (errno != EEXIST) return false;
+  // Only rename replaces a file in one step, and it wants a name.
+  const std::string name = NamedTemporary::nameBeside(path);
+  if (!linkAs(name)) return false;
+  if (::rename(name.c_str(), path.c_str()) == 0) return true;
+  const int error = errno;
+  ::unlink(name.c_str());
+  fail(path, "could not be put in place", error);
+}
+
+void writeThroughNamed(const std::string& path, const void* bytes, std::size_t count) {
+  NamedTemporary file(path);
+  writeAll(file.descriptor(), path, bytes, count);
+  file.publish();
+}
+
+void writeToDevice(const std::string& path, const void* bytes, std::size_t count) {
+  Descriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+  if (file.get() < 0) fail(path, "cannot be opened for writing", errno);
+  writeAll(file.get(), path, bytes, count);
+  if (file.close() != 0) fail(path, "could not be written", errno);
+}
+
+/// The file that a symbolic link stands for, so that the link stays.
+std::string linkTarget(const std::string& path) {
+  const std::unique_ptr<char, decltype(&std::free)> resolved(::realpath(path.c_str(), nullptr), &std::free);
+  return resolved ? std::string(resolved.get()) : path;
+}
+
+}  // namespace
+
+void writeAll(int descriptor, const std::string& name, const void* bytes, std::size_t count) {
+  const char* next = static_cast<const char*>(bytes);
+  while (count > 0) {
+    const ssize_t written = ::write(descriptor, next, count);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(name, "could not be written", errno);
+    next += written;
+    count -= static_cast<std::size_t>(written);
+  }
+}
+
+void writeFileWhole(const std::string& path, const void* bytes, std::size_t count) {
+  struct stat status {};
+  std::string target = path;
+  if (::lstat(path.c_str(), &status) == 0) {
+    if (S_ISLNK(status.st_mode)) {
+      target = linkTarget(path);
+      if (::stat(target.c_str(), &status) != 0)
+        status.st_mode = S_IFREG | kFileMode;  // the link leads nowhere yet
+    }
+    if (S_ISDIR(status.st_mode)) throw OutputError(path + ": is a directory; name a file in it");
+    if (!S_ISREG(status.st_mode)) return writeToDevice(target, bytes, count);
+    if ((status.st_mode & 0222) == 0)
+      throw OutputError(path +
+                        ": is there already and read-only; remove it, make it writable or write elsewhere");
+  }
+  if (!writeThroughNameless(target, bytes, count)) writeThroughNamed(target, bytes, count);
+}
+
+void makeDirectoriesOf(const std::string& path) {
+  const std::string directory = directoryOf(path);
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) fail(directory, "the directory cannot be made", error.value());
+}
+
+void abandonWrites() {
+  TemporaryNames& registry = temporaryNames();
+  registry.mutex.lock();  // for good: nobody makes another temporary file
+  for (const std::string& name : registry.names) ::unlink(name.c_str());
+}
+
+}  // namespace limn::scene

@@ -1,0 +1,205 @@
+// PNG decoding through libpng, with hard limits: the files may come from anywhere.
+#include <libdeflate.h>
+#include <png.h>
+
+#include <csetjmp>
+#include <cstring>
+#include <fstream>
+#include <span>
+#include <string_view>
+
+#include "apps/scene/image.h"
+#include "apps/scene/load.h"
+
+namespace limn::scene {
+namespace {
+
+constexpr std::uint8_t kSignature[8] = {137, 80, 78, 71, 13, 10, 26, 10};
+constexpr std::size_t kChunkOverhead = 12;       // length, type, checksum
+constexpr std::size_t kLargestExpansion = 1032;  // of deflate: 258 bytes from 2 bits
+constexpr std::size_t kLargestAncillaryChunk = 8U << 20;
+
+std::uint32_t bigEndian32(const std::uint8_t* p) {
+  return std::uint32_t{p[0]} << 24 | std::uint32_t{p[1]} << 16 | std::uint32_t{p[2]} << 8 | p[3];
+}
+
+bool readFile(const std::string& path, std::vector<std::uint8_t>& bytes) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
+  if (size < 0) return false;
+  bytes.resize(static_cast<std::size_t>(size));
+  file.seekg(0);
+  file.read(reinterpret_cast<char*>(bytes.data()), size);
+  return static_cast<bool>(file);
+}
+
+/// Everything that libpng's jumps pass over: it must outlive them.
+struct PngReader {
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  std::span<const std::uint8_t> rest;
+  std::string message;
+  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
+};
+
+PngReader& readerOf(png_structp png) {
+  return *static_cast<PngReader*>(png_get_error_ptr(png));
+}
+
+void onError(png_structp png, png_const_charp message) {
+  readerOf(png).message = message;
+  png_longjmp(png, 1);
+}
+
+void onWarning(png_structp /*png*/, png_const_charp /*message*/) {}
+
+void takeBytes(png_structp png, png_bytep out, std::size_t count) {
+  PngReader& reader = readerOf(png);
+  if (count > reader.rest.size()) png_error(png, "the file ends too early");
+  std::memcpy(out, reader.rest.data(), count);
+  reader.rest = reader.rest.subspan(count);
+}
+
+/// Up to the header; asks libpng for RGBA with `bits` per sample. False on an error.
+bool readHeader(PngReader& reader, int bits, int& width, int& height, int& bitDepth) {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+  png_set_user_limits(reader.png, kLargestSize, kLargestSize);
+  png_set_chunk_malloc_max(reader.png, kLargestAncillaryChunk);
+  png_set_read_fn(reader.png, &reader, takeBytes);
+  png_read_info(reader.png, reader.info);
+  width = static_cast<int>(png_get_image_width(reader.png, reader.info));
+  height = static_cast<int>(png_get_image_height(reader.png, reader.info));
+  bitDepth = png_get_bit_depth(reader.png, reader.info);
+  png_set_expand(reader.png);
+  if (bits == 16) {
+    png_set_expand_16(reader.png);
+    png_set_swap(reader.png);
+  } else {
+    png_set_scale_16(reader.png);
+  }
+  png_set_gray_to_rgb(reader.png);
+  png_set_add_alpha(reader.png, bits == 16 ? 0xffff : 0xff, PNG_FILLER_AFTER);
+  png_set_interlace_handling(reader.png);
+  png_read_update_info(reader.png, reader.info);
+  return true;
+}
+
+bool readRows(PngReader& reader, png_bytepp rows) {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+  png_read_image(reader.png, rows);
+  png_read_end(reader.png, reader.info);
+  return true;
+}
+
+[[noreturn]] void refuse(const std::string& path, const std::string& what) {
+  throw InputError(path + ": " + what + "; give a whole PNG file of at most 16384x16384 pixels");
+}
+
+/// Decodes into rows of RGBA with `bits` per sample. `allocate(width, height)` returns the place for all of
+/// them.
+template <class Allocate>
+void decode(const std::string& path, int bits, int& bitDepth, TextChunks* texts, const Allocate& allocate) {
+  std::vector<std::uint8_t> file;
+  if (!readFile(path, file)) throw InputError(path + ": cannot be read; is the name right?");
+  if (file.size() < sizeof kSignature || std::memcmp(file.data(), kSignature, sizeof kSignature) != 0)
+    refuse(path, "is not a PNG file");
+  PngReader reader;
+  reader.rest = file;
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, onError, onWarning);
+  if (reader.png != nullptr) reader.info = png_create_info_struct(reader.png);
+  if (reader.info == nullptr) throw std::bad_alloc();
+
+  int width = 0, height = 0;
+  if (!readHeader(reader, bits, width, height, bitDepth)) refuse(path, "is damaged (" + reader.message + ")");
+  const std::size_t stride = png_get_rowbytes(reader.png, reader.info);
+  // Before memory is taken: so few bytes cannot hold so many pixels (1 bit each at the least).
+  if (file.size() * kLargestExpansion <
+      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) / 8)
+    refuse(path, "is damaged (too short for its size)");
+  png_bytep pixels = allocate(width, height);
+  std::vector<png_bytep> rows(static_cast<std::size_t>(height));
+  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = pixels + y * stride;
+  if (!readRows(reader, rows.data())) refuse(path, "is damaged (" + reader.message + ")");
+
+  if (texts == nullptr) return;
+  png_textp chunks = nullptr;
+  int count = 0;
+  png_get_text(reader.png, reader.info, &chunks, &count);
+  for (int i = 0; i < count; ++i) texts->emplace_back(chunks[i].key, chunks[i].text);
+}
+
+/// Keyword and text of a tEXt or an uncompressed iTXt chunk; others are passed over.
+void collectText(std::string_view type, std::string_view data, TextChunks& texts) {
+  const std::size_t end = data.find('\0');
+  if (end == std::string_view::npos) return;
+  const std::string keyword(data.substr(0, end));
+  std::string_view text = data.substr(end + 1);
+  if (type == "iTXt") {
+    if (text.size() < 4 || text[0] != '\0') return;
+    text = text.substr(2);
+    for (int field = 0; field < 2; ++field) {  // language, translated keyword
+      const std::size_t zero = text.find('\0');
+      if (zero == std::string_view::npos) return;
+      text = text.substr(zero + 1);
+    }
+  }
+  texts.emplace_back(keyword, text);
+}
+
+}  // namespace
+
+Image readPng(const std::string& path, TextChunks* texts) {
+  Image image;
+  int bitDepth = 0;
+  decode(path, 8, bitDepth, texts, [&](int width, int height) {
+    image.width = width;
+    image.height = height;
+    image.rgba.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    return png_bytep{image.rgba.data()};
+  });
+  return image;
+}
+
+Image16 readPng16(const std::string& path, bool* is16) {
+  Image16 image;
+  int bitDepth = 0;
+  decode(path, 16, bitDepth, nullptr, [&](int width, int height) {
+    image.width = width;
+    image.height = height;
+    image.channels = 4;
+    image.samples.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    return reinterpret_cast<png_bytep>(image.samples.data());
+  });
+  if (is16 != nullptr) *is16 = bitDepth == 16;
+  return image;
+}
+
+bool inspectPng(const std::string& path, PngSummary& summary) {
+  std::vector<std::uint8_t> file;
+  if (!readFile(path, file) || file.size() < sizeof kSignature ||
+      std::memcmp(file.data(), kSignature, sizeof kSignature) != 0)
+    return false;
+  bool sawData = false;
+  for (std::size_t at = sizeof kSignature; file.size() - at >= kChunkOverhead;) {
+    const std::size_t length = bigEndian32(&file[at]);
+    if (file.size() - at - kChunkOverhead < length) return false;
+    const std::uint8_t* type = &file[at + 4];
+    if (libdeflate_crc32(0, type, 4 + length) != bigEndian32(type + 4 + length)) return false;
+    const std::string_view name(reinterpret_cast<const char*>(type), 4);
+    const std::string_view data(reinterpret_cast<const char*>(type + 4), length);
+    if (name == "IHDR" && length == 13) {
+      summary.width = static_cast<int>(bigEndian32(type + 4));
+      summary.height = static_cast<int>(bigEndian32(type + 8));
+      summary.bitDepth = type[12];
+    } else if (name == "tEXt" || name == "iTXt") {
+      collectText(name, data, summary.texts);
+    } else if (name == "IDAT") {
+      sawData = true;
+    }
+    at += kChunkOverhead + length;
+    if (name == "IEND") return sawData && summary.width > 0 && at == file.size();
+  }
+  return false;
+}
+
+}  // namespace limn::scene
