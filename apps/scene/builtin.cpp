@@ -24,15 +24,20 @@ Mesh cone70() {
   return revolve(profile, 35);
 }
 
-// A chess pawn: rounded foot, concave body, collar, head; creases where body, collar and head meet.
-Mesh pawn() {
+// A chess pawn: rounded foot, concave body, collar, head; creases where body, collar and head meet. `detail`
+// times as many chords along the profile as the coarse one has.
+Mesh pawn(int sectors, int detail) {
   const ProfilePiece profile[] = {
-      straightPiece({0, 0}, {0.58, 0}),           arcPiece({0.58, 0.13}, 0.13, -90, 90, 3),
-      straightPiece({0.58, 0.26}, {0.48, 0.26}),  curvePiece({0.48, 0.26}, {0.20, 0.42}, {0.20, 0.98}, 3),
-      straightPiece({0.20, 0.98}, {0.24, 0.98}),  arcPiece({0.24, 1.06}, 0.08, -90, 90, 2),
-      straightPiece({0.24, 1.14}, {0.192, 1.14}), arcPiece({0, 1.396}, 0.32, -53.13010235415598, 90, 4),
+      straightPiece({0, 0}, {0.58, 0}),
+      arcPiece({0.58, 0.13}, 0.13, -90, 90, 3 * detail),
+      straightPiece({0.58, 0.26}, {0.48, 0.26}),
+      curvePiece({0.48, 0.26}, {0.20, 0.42}, {0.20, 0.98}, 3 * detail),
+      straightPiece({0.20, 0.98}, {0.24, 0.98}),
+      arcPiece({0.24, 1.06}, 0.08, -90, 90, 2 * detail),
+      straightPiece({0.24, 1.14}, {0.192, 1.14}),
+      arcPiece({0, 1.396}, 0.32, -53.13010235415598, 90, 4 * detail),
   };
-  return revolve(profile, 12);
+  return revolve(profile, sectors);
 }
 
 // A round plate with a soft rim for the others to stand on.
@@ -86,7 +91,7 @@ Scene makeDemo() {
   addMaterial(scene, {0.20f, 0.52f, 0.24f}, 0.25f, 24);
   addMaterial(scene, {0.78f, 0.74f, 0.68f}, 0.60f, 96);
   addObject(scene, "plate", plate(), placed({0, 0, 0}, 1), 0);
-  addObject(scene, "pawn", pawn(), placed({-0.25, 0, 1.15}, 0.95), 1);
+  addObject(scene, "pawn", pawn(12, 1), placed({-0.25, 0, 1.15}, 0.95), 1);
   addObject(scene, "knot", knot(24, 6), placed({0, 1.55, -1.15}, 0.44), 2);
   addObject(scene, "sphere", icosphere(1), placed({-1.6, 0.72, 0.1}, 0.74), 3);
   addObject(scene, "cone", cone70(), placed({1.75, 0, -0.35}, 1.4), 4);
@@ -146,6 +151,11 @@ std::optional<Mesh> makeWithResolution(const std::string& name) {
     checkTubeResolution(name, (*n)[0], (*n)[1]);
     return knot((*n)[0], (*n)[1]);
   }
+  if (const auto n = resolutionsOf(name, "pawn", 2)) {
+    if ((*n)[0] < 3 || (*n)[0] > 4096 || (*n)[1] < 1 || (*n)[1] > 64)
+      refuse(name, "SECTORS is 3 to 4096, DETAIL 1 to 64");
+    return pawn((*n)[0], (*n)[1]);
+  }
   return std::nullopt;
 }
 
@@ -169,6 +179,8 @@ std::vector<BuiltinModel> builtinModels() {
       {"cone-70",
        "cone of radius 0.6 and height 1 on the plane y = 0, 35 sectors, crease at the rim, 70 triangles"},
       {"pawn", "chess pawn, 12 sectors, creases at collar and head, 360 triangles"},
+      {"pawn:SECTORS:DETAIL",
+       "the pawn's surface finer: SECTORS 3 to 4096, DETAIL 1 to 64 times the chords of its profile"},
       {"icosphere:LEVEL", "icosahedron divided LEVEL times, 20 * 4^LEVEL triangles, LEVEL 0 to 9"},
       {"torus:M:N", "tube of N sides in M rings along the unit circle, 2 * M * N triangles"},
       {"knot:M:N", "tube of N sides in M rings along a trefoil knot, 2 * M * N triangles"},
@@ -182,7 +194,7 @@ Scene makeBuiltin(const std::string& name) {
   if (name == "torus-576") return sceneOf(name, torus(24, 12));
   if (name == "knot-480") return sceneOf(name, knot(40, 6));
   if (name == "cone-70") return sceneOf(name, cone70());
-  if (name == "pawn") return sceneOf(name, pawn());
+  if (name == "pawn") return sceneOf(name, pawn(12, 1));
   if (std::optional<Mesh> mesh = makeWithResolution(name)) return sceneOf(name, std::move(*mesh));
   refuseUnknown(name);
 }
