@@ -10,12 +10,12 @@
 
 namespace limn::silhouette {
 
-/// A triangle mesh. A vertex is one combination of position, normal and whatever else the caller attaches to it; texture
-/// seams and creases have several vertices at one position.
+/// A triangle mesh. A vertex is one combination of position, normal and whatever else the caller attaches to
+/// it; texture seams and creases have several vertices at one position.
 struct Mesh {
-  std::span<const glm::vec3> positions;     ///< model space, finite, magnitude up to 1e6
-  std::span<const glm::vec3> normals;       ///< unit shading normals, one per vertex
-  std::span<const std::uint32_t> indices;   ///< three per triangle, counter-clockwise seen from outside
+  std::span<const glm::vec3> positions;    ///< model space, finite, magnitude up to 1e6
+  std::span<const glm::vec3> normals;      ///< unit shading normals, one per vertex
+  std::span<const std::uint32_t> indices;  ///< three per triangle, counter-clockwise seen from outside
 
   std::size_t triangleCount() const { return indices.size() / 3; }
 };
@@ -23,13 +23,13 @@ struct Mesh {
 /// A viewpoint, in the mesh's own space, and how that space maps to pixels.
 struct View {
   Projection projection;
-  glm::mat4 modelToView{1.0f};  ///< affine; any scale, reflection included
-  glm::vec3 eye{0.0f};          ///< perspective: the eye `o`
+  glm::mat4 modelToView{1.0f};             ///< affine; any scale, reflection included
+  glm::vec3 eye{0.0f};                     ///< perspective: the eye `o`
   glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< orthographic: the unit direction `d` of looking
 };
 
-/// The view of a mesh placed by `modelToView`, computed in double precision (the eye's model position loses nothing to
-/// far-away placements). Throws std::invalid_argument when the matrix is singular or not finite.
+/// The view of a mesh placed by `modelToView`, computed in double precision (the eye's model position loses
+/// nothing to far-away placements). Throws std::invalid_argument when the matrix is singular or not finite.
 View makeView(const Projection& projection, const glm::dmat4& modelToView);
 
 }  // namespace limn::silhouette

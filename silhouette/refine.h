@@ -1,9 +1,17 @@
 // The refined triangle stream of a mesh for one viewpoint, by any of the methods.
 //
 //   limn::silhouette::Topology topology(mesh);                    // once, or once per change of the indices
-//   limn::silhouette::Refiner refiner(mesh, topology, workers);   // keeps what does not change from view to view
-//   refiner.refine(view, parameters, stream);                     // per frame
-//   refiner.deform(mesh) before refine() when positions and normals have changed
+//   limn::silhouette::Refiner refiner(mesh, topology, workers);   // keeps what does not change from view to
+//   view refiner.refine(view, parameters, stream);                     // per frame refiner.deform(mesh)
+//   before refine() when positions and normals have changed refineAll(tasks, parameters, workers); // per
+//   frame, many instances at once
+//
+// The view maps the mesh's own space to pixels, so instances of one mesh that differ by a similarity
+// (rotation, uniform scale, reflection, translation) share one Refiner: one topology, one set of edge curves,
+// a view and a stream each. Tangent planes and angles do not survive a non-uniform scale: pose such an
+// instance into world space (positions by the matrix, normals by its inverse transpose; a reflection must
+// also exchange two indices of every triangle), give it a Refiner of its own and call deform() when it moves
+// against itself.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +19,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -28,10 +37,11 @@ enum class ShadingNormals { kLinear, kQuadratic };
 /// How to refine. The defaults are those of the program.
 struct Parameters {
   Method method = Method::kPatches;
-  float tolerance = 0.25f;  ///< guaranteed distance in pixels, >= 0; used when segments == 0
-  int segments = 0;         ///< fixed count per edge, 1 … kMaxSegments; 0 = from the tolerance
-  float beta = 0.25f;       ///< constant β of (2), >= 0
-  float wedgeDegrees = 0;   ///< > 0: β per edge from the wedge angle φ, (3)
+  float tolerance = 0.25f;           ///< guaranteed distance in pixels, >= 0; used when segments == 0
+  int segments = 0;                  ///< fixed count per edge, 1 … kMaxSegments; 0 = from the tolerance
+  float beta = 0.25f;                ///< constant β of (2), >= 0
+  float wedgeDegrees = 0;            ///< > 0: β per edge from the wedge angle φ, (3)
+  std::span<const float> edgeBetas;  ///< not empty: β of every edge of the topology, before the two above
   Silhouetteness silhouetteness = Silhouetteness::kEdge;
   Tangents tangents = Tangents::kProjected;
   bool robust = true;       ///< limited ends, methods/1 section 1.6
@@ -42,9 +52,10 @@ struct Parameters {
 
 inline constexpr int kMaxSegments = 64;  ///< per edge; past it the tolerance is no longer guaranteed
 
-/// Where a new vertex lies on the coarse mesh, for whatever attributes the caller interpolates: the source triangle and
-/// the weights of its corners 1 and 2 (corner 0 has the rest). On an edge whose faces share both end vertices one vertex
-/// serves both faces; across a seam each face has its own, at the same position bit for bit.
+/// Where a new vertex lies on the coarse mesh, for whatever attributes the caller interpolates: the source
+/// triangle and the weights of its corners 1 and 2 (corner 0 has the rest). On an edge whose faces share both
+/// end vertices one vertex serves both faces; across a seam each face has its own, at the same position bit
+/// for bit.
 struct Origin {
   std::uint32_t triangle = 0;
   glm::vec2 weights{0.0f};
@@ -53,7 +64,9 @@ struct Origin {
 /// Triangles that replace some of the mesh's. Everything that is not replaced is drawn as it is.
 struct RefinedStream {
   std::vector<glm::vec3> positions;  ///< of new vertices, model space
-  std::vector<glm::vec3> normals;    ///< unit
+  /// Not unit: weighted means of the mesh's, so that shading between new vertices is what it is on the flat
+  /// triangle to the last digit; only the direction counts. Never zero.
+  std::vector<glm::vec3> normals;
   std::vector<Origin> origins;
   /// Three per triangle. Below mesh.positions.size(): a vertex of the mesh; from there on: a new one.
   std::vector<std::uint32_t> indices;
@@ -61,7 +74,9 @@ struct RefinedStream {
   std::vector<std::uint64_t> replaced;         ///< bit per mesh triangle, triangleCount/64 rounded up words
 
   std::size_t triangleCount() const { return indices.size() / 3; }
-  bool isReplaced(std::size_t triangle) const { return (replaced[triangle / 64] >> (triangle % 64) & 1) != 0; }
+  bool isReplaced(std::size_t triangle) const {
+    return (replaced[triangle / 64] >> (triangle % 64) & 1) != 0;
+  }
   void clear(std::size_t meshTriangles);
 
   /// Indices in range, order ascending, replaced bits match the source triangles, all numbers finite.
@@ -70,12 +85,14 @@ struct RefinedStream {
 
 /// Per frame: what the refinement did and saw; for overlays, `limn refine --alpha` and statistics.
 struct RefineReport {
-  std::size_t curvedTriangles = 0;     ///< of the mesh, replaced
-  std::size_t refinedTriangles = 0;    ///< in the stream
-  std::size_t smoothEdges = 0;         ///< alpha > 0
-  std::size_t cappedEdges = 0;         ///< wanted more than kMaxSegments segments
+  std::size_t curvedTriangles = 0;   ///< of the mesh, replaced
+  std::size_t refinedTriangles = 0;  ///< in the stream
+  std::size_t smoothEdges = 0;       ///< alpha > 0
+  std::size_t cappedEdges = 0;       ///< wanted more than kMaxSegments segments
   double classifyMs = 0, refineMs = 0;
 };
+
+struct RefineTask;
 
 class Refiner {
  public:
@@ -85,19 +102,34 @@ class Refiner {
   Refiner(Refiner&&) noexcept;
   Refiner& operator=(Refiner&&) noexcept;
 
-  /// New positions and normals, same counts and indices. What depends on them is computed anew by the next refine().
+  /// New positions and normals, same counts and indices. What depends on them is computed anew by the next
+  /// refine().
   void deform(const Mesh& mesh);
 
-  /// Refines for a view. The same bits for any number of threads. Throws std::invalid_argument for parameters outside
-  /// their ranges.
-  void refine(const View& view, const Parameters& parameters, RefinedStream& stream, RefineReport* report = nullptr);
+  /// Refines for a view. The same bits for any number of threads. Throws std::invalid_argument for parameters
+  /// outside their ranges.
+  void refine(const View& view, const Parameters& parameters, RefinedStream& stream,
+              RefineReport* report = nullptr);
 
-  /// Silhouetteness of every edge in the last view refined; empty for methods that have none.
-  const std::vector<float>& alphas() const;
+  /// Silhouetteness α of every edge of the topology as refine() sees it; all 0 for methods that have none.
+  void silhouetteness(const View& view, const Parameters& parameters, std::vector<float>& alphas);
 
  private:
+  friend void refineAll(std::span<RefineTask> tasks, const Parameters& parameters, Workers& workers);
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// One instance of a frame.
+struct RefineTask {
+  Refiner* refiner = nullptr;  ///< several tasks may name the same one
+  View view;
+  RefinedStream* stream = nullptr;  ///< of this task alone
+  RefineReport report;              ///< filled
+};
+
+/// Refines all tasks: small meshes side by side, large ones one after the other with all threads. The same
+/// bits as one refine() after another. `workers` must be those of the refiners.
+void refineAll(std::span<RefineTask> tasks, const Parameters& parameters, Workers& workers);
 
 }  // namespace limn::silhouette

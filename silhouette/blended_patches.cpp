@@ -1,0 +1,355 @@
+// View-dependent blended Bézier patches: flat away from the silhouette, smooth at it, continuous in the
+// viewpoint.
+//
+// Based on: C. Dyken, M. Reimers, "Real-time linear silhouette enhancement", 2004.
+// Differs in: segment counts come from a tolerance in pixels that holds under perspective (pixel_bound.h); a
+// triangle whose three edges stay straight and whose midpoint stays within the tolerance is passed through as
+// flat.
+//
+// Every edge has one record with its α, curve and segments, from which both its triangles take the same
+// points.
+#include <array>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <numeric>
+
+#include "raster/base/check.h"
+#include "silhouette/edge_curves.h"
+#include "silhouette/method.h"
+#include "silhouette/patch.h"
+#include "silhouette/pixel_bound.h"
+#include "silhouette/silhouetteness.h"
+
+namespace limn::silhouette {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+
+constexpr std::size_t kEdgesPerBlock = 4096;
+constexpr std::size_t kWordsPerBlock = 64;  // of 64 triangles each
+
+// An edge that bends in this view.
+struct SmoothEdge {
+  std::uint32_t edge = 0;
+  float alpha = 0;
+  CurveOffsets offsets{};  // α d
+  std::uint32_t segments = 1;
+  std::uint32_t firstVertex = 0;  // of segments - 1, or twice that, in the stream
+  bool seam = false;              // the faces have vertices of their own, those of faces[1] come second
+
+  std::uint32_t inner() const { return segments - 1; }
+  std::uint32_t vertexCount() const { return seam ? 2 * inner() : inner(); }
+};
+
+// What a block of triangles adds to the stream.
+struct Share {
+  std::uint32_t curved = 0, vertices = 0, triangles = 0;
+};
+
+struct Scratch {
+  std::vector<std::uint32_t> blockCounts;  // smooth edges per block of edges, then their prefix sums
+  std::vector<float> alphas;
+  std::vector<SmoothEdge> smooth;
+  std::vector<std::uint32_t> recordOf;  // per edge: index into smooth, or kNone
+  std::vector<Share> shares;            // per block of triangles, then prefix sums
+};
+
+// One view's refinement; all it refers to outlives it.
+struct Pass {
+  const Mesh& mesh;
+  const Topology& topology;
+  const EdgeTest& test;
+  const std::vector<CurveOffsets>& curves;
+  const View& view;
+  const Parameters& parameters;
+  const Crew& crew;
+  Scratch& scratch;
+  RefinedStream& stream;
+  RefineReport& report;
+  PixelBound bound;
+
+  void run();
+  void classify();
+  void measure(SmoothEdge& smooth);
+  void placeEdges();
+  Share decide(std::size_t word);
+  void placeTriangles();
+  void emitEdge(const SmoothEdge& smooth);
+  void emitTriangle(std::uint32_t triangle, std::uint32_t& vertex, std::uint32_t& face);
+
+  const SmoothEdge* recordOfSide(std::size_t triangle, std::size_t side) const {
+    const std::uint32_t record = scratch.recordOf[topology.sideEdges()[3 * triangle + side]];
+    return record == kNone ? nullptr : &scratch.smooth[record];
+  }
+  Patch patchOf(std::size_t triangle) const;
+  void writeVertex(std::uint32_t at, const vec3& position, const Origin& origin);
+};
+
+void mark(RefinedStream& stream, std::uint32_t triangle) {
+  std::atomic_ref<std::uint64_t>(stream.replaced[triangle / 64])
+      .fetch_or(std::uint64_t{1} << (triangle % 64), std::memory_order_relaxed);
+}
+
+void Pass::run() {
+  const auto start = std::chrono::steady_clock::now();
+  classify();
+  report.classifyMs =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  placeEdges();
+  placeTriangles();
+  for (const SmoothEdge& smooth : scratch.smooth) scratch.recordOf[smooth.edge] = kNone;
+}
+
+// Lists the edges with α > 0, in order, and marks their triangles as candidates.
+void Pass::classify() {
+  const std::size_t edges = topology.edges().size(), blocks = (edges + kEdgesPerBlock - 1) / kEdgesPerBlock;
+  scratch.blockCounts.assign(blocks + 1, 0);
+  scratch.alphas.resize(edges);
+  crew.forBlocks(edges, kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t count = 0;
+    for (std::size_t e = begin; e < end; ++e) {
+      const bool bends = curves[e][0] != vec3(0.0f) || curves[e][1] != vec3(0.0f);
+      scratch.alphas[e] = bends ? test.alpha(view, parameters, e) : 0.0f;
+      if (scratch.alphas[e] > 0.0f) ++count;
+    }
+    scratch.blockCounts[begin / kEdgesPerBlock + 1] = count;
+  });
+  std::partial_sum(scratch.blockCounts.begin(), scratch.blockCounts.end(), scratch.blockCounts.begin());
+  scratch.smooth.resize(scratch.blockCounts[blocks]);
+  report.smoothEdges = scratch.smooth.size();
+  crew.forBlocks(edges, kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t record = scratch.blockCounts[begin / kEdgesPerBlock];
+    for (std::size_t e = begin; e < end; ++e) {
+      if (scratch.alphas[e] <= 0.0f) continue;
+      SmoothEdge& smooth = scratch.smooth[record];
+      smooth = {};
+      smooth.edge = static_cast<std::uint32_t>(e);
+      smooth.alpha = scratch.alphas[e];
+      measure(smooth);
+      scratch.recordOf[e] = record++;
+      for (const Side& face : topology.edges()[e].faces)
+        if (face.triangle != kNone) mark(stream, face.triangle);
+    }
+  });
+}
+
+void Pass::measure(SmoothEdge& smooth) {
+  const EdgeVertices v = edgeVertices(mesh, topology.edges()[smooth.edge]);
+  smooth.offsets = {smooth.alpha * curves[smooth.edge][0], smooth.alpha * curves[smooth.edge][1]};
+  smooth.seam = v[0] != v[1];
+  if (parameters.segments > 0) {
+    smooth.segments = static_cast<std::uint32_t>(parameters.segments);
+    return;
+  }
+  bool capped = false;
+  const float error = bound.chordError(mesh.positions[v[0][0]], mesh.positions[v[0][1]], smooth.offsets);
+  smooth.segments = static_cast<std::uint32_t>(segmentsFor(error, parameters.tolerance, capped));
+  if (capped) std::atomic_ref<std::size_t>(report.cappedEdges).fetch_add(1, std::memory_order_relaxed);
+}
+
+// Gives every edge its place in the stream and writes its vertices.
+void Pass::placeEdges() {
+  std::uint32_t vertices = 0;
+  for (SmoothEdge& smooth : scratch.smooth) {
+    smooth.firstVertex = vertices;
+    vertices += smooth.vertexCount();
+  }
+  stream.positions.resize(vertices);
+  stream.normals.resize(vertices);
+  stream.origins.resize(vertices);
+  crew.forBlocks(scratch.smooth.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) emitEdge(scratch.smooth[k]);
+  });
+}
+
+Patch Pass::patchOf(std::size_t triangle) const {
+  Patch patch;
+  for (std::size_t k = 0; k < 3; ++k) {
+    patch.corners[k] = mesh.positions[mesh.indices[3 * triangle + k]];
+    const SmoothEdge* smooth = recordOfSide(triangle, k);
+    if (smooth == nullptr) continue;
+    const bool ascends =
+        topology.points()[mesh.indices[3 * triangle + k]] == topology.edges()[smooth->edge].point[0];
+    patch.sides[k] = {smooth->offsets[ascends ? 0 : 1], smooth->offsets[ascends ? 1 : 0]};
+  }
+  return patch;
+}
+
+// Which of a word's candidates are curved: the others lose their bit.
+Share Pass::decide(std::size_t word) {
+  Share share;
+  for (std::uint64_t rest = stream.replaced[word]; rest != 0; rest &= rest - 1) {
+    const std::size_t triangle = 64 * word + static_cast<std::size_t>(std::countr_zero(rest));
+    std::uint32_t boundary = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const SmoothEdge* smooth = recordOfSide(triangle, k);
+      boundary += smooth != nullptr ? smooth->segments : 1;
+    }
+    constexpr float third = 1.0f / 3.0f;
+    const Patch patch = patchOf(triangle);
+    const vec3 flat = patch.flatPoint(third, third, third);
+    if (boundary == 3 &&
+        bound.distance(flat, flat + patch.offset(third, third, third)) <= parameters.tolerance) {
+      stream.replaced[word] &= ~(std::uint64_t{1} << (triangle % 64));
+      continue;
+    }
+    ++share.curved;
+    ++share.vertices;
+    share.triangles += boundary;
+  }
+  return share;
+}
+
+void Pass::placeTriangles() {
+  const std::size_t words = stream.replaced.size(), blocks = (words + kWordsPerBlock - 1) / kWordsPerBlock;
+  scratch.shares.assign(blocks + 1, {});
+  crew.forBlocks(words, kWordsPerBlock, [&](std::size_t begin, std::size_t end) {
+    Share& sum = scratch.shares[begin / kWordsPerBlock + 1];
+    for (std::size_t word = begin; word < end; ++word) {
+      const Share share = decide(word);
+      sum = {sum.curved + share.curved, sum.vertices + share.vertices, sum.triangles + share.triangles};
+    }
+  });
+  const auto edgeVertexCount = static_cast<std::uint32_t>(stream.positions.size());
+  scratch.shares[0].vertices = edgeVertexCount;
+  for (std::size_t block = 1; block <= blocks; ++block) {
+    const Share &before = scratch.shares[block - 1], &own = scratch.shares[block];
+    scratch.shares[block] = {before.curved + own.curved, before.vertices + own.vertices,
+                             before.triangles + own.triangles};
+  }
+  const Share all = scratch.shares[blocks];
+  report.curvedTriangles = all.curved;
+  stream.positions.resize(all.vertices);
+  stream.normals.resize(all.vertices);
+  stream.origins.resize(all.vertices);
+  stream.indices.resize(3 * std::size_t{all.triangles});
+  stream.sourceTriangles.resize(all.triangles);
+  crew.forBlocks(words, kWordsPerBlock, [&](std::size_t begin, std::size_t end) {
+    const Share& before = scratch.shares[begin / kWordsPerBlock];
+    std::uint32_t vertex = before.vertices, face = before.triangles;
+    for (std::size_t word = begin; word < end; ++word)
+      for (std::uint64_t rest = stream.replaced[word]; rest != 0; rest &= rest - 1)
+        emitTriangle(
+            static_cast<std::uint32_t>(64 * word) + static_cast<std::uint32_t>(std::countr_zero(rest)),
+            vertex, face);
+  });
+}
+
+// The normal is the weighted mean of the corners'; where they cancel, the face's.
+void Pass::writeVertex(std::uint32_t at, const vec3& position, const Origin& origin) {
+  const std::uint32_t* corner = &mesh.indices[3 * std::size_t{origin.triangle}];
+  const vec2 w = origin.weights;
+  const vec3 normal = (1.0f - w.x - w.y) * mesh.normals[corner[0]] + w.x * mesh.normals[corner[1]] +
+                      w.y * mesh.normals[corner[2]];
+  stream.positions[at] = position;
+  stream.normals[at] = glm::dot(normal, normal) > 1e-12f ? normal : test.faceNormal(origin.triangle);
+  stream.origins[at] = origin;
+}
+
+// The weights of corners 1 and 2 at t along a side.
+vec2 sideWeights(std::uint32_t side, float t) {
+  if (side == 0) return {t, 0.0f};
+  if (side == 1) return {1.0f - t, t};
+  return {0.0f, 1.0f - t};
+}
+
+void Pass::emitEdge(const SmoothEdge& smooth) {
+  const Edge& edge = topology.edges()[smooth.edge];
+  const std::array<std::uint32_t, 2> ends = edgeVertices(mesh, edge)[0];
+  const vec3 &p = mesh.positions[ends[0]], &q = mesh.positions[ends[1]];
+  for (std::uint32_t k = 1; k < smooth.segments; ++k) {
+    const float t = static_cast<float>(k) / static_cast<float>(smooth.segments);
+    const vec3 position = curvePoint(p, q, smooth.offsets, t);
+    const std::uint32_t at = smooth.firstVertex + k - 1;
+    for (std::uint32_t face = 0; face < (smooth.seam ? 2u : 1u); ++face) {
+      const Side& side = edge.faces[face];
+      const float along = edge.runsBack(face) ? 1.0f - t : t;
+      writeVertex(at + face * smooth.inner(), position, {side.triangle, sideWeights(side.side, along)});
+    }
+  }
+}
+
+// A fan around the parametric midpoint.
+void Pass::emitTriangle(std::uint32_t triangle, std::uint32_t& vertex, std::uint32_t& face) {
+  const auto firstNew = static_cast<std::uint32_t>(mesh.positions.size());
+  constexpr float third = 1.0f / 3.0f;
+  const std::uint32_t apex = vertex++;
+  writeVertex(apex, patchOf(triangle).point(third, third, third), {triangle, {third, third}});
+  const auto emit = [&](std::uint32_t a, std::uint32_t b) {
+    stream.indices[3 * std::size_t{face}] = firstNew + apex;
+    stream.indices[3 * std::size_t{face} + 1] = a;
+    stream.indices[3 * std::size_t{face} + 2] = b;
+    stream.sourceTriangles[face++] = triangle;
+  };
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::uint32_t side = 3 * triangle + k;
+    std::uint32_t last = mesh.indices[side];
+    if (const SmoothEdge* smooth = recordOfSide(triangle, k); smooth != nullptr) {
+      const Edge& edge = topology.edges()[smooth->edge];
+      const std::uint32_t own = edge.faces[1].triangle == triangle && edge.faces[1].side == k ? 1 : 0;
+      const std::uint32_t first = firstNew + smooth->firstVertex + (smooth->seam ? own * smooth->inner() : 0);
+      for (std::uint32_t i = 0; i < smooth->inner(); ++i) {
+        const std::uint32_t next = first + (edge.runsBack(own) ? smooth->inner() - 1 - i : i);
+        emit(last, next);
+        last = next;
+      }
+    }
+    emit(last, mesh.indices[nextInTriangle(side)]);
+  }
+}
+
+class BlendedPatches final : public MethodState {
+ public:
+  explicit BlendedPatches(const Source& source)
+      : mesh_(source.mesh), topology_(*source.topology), scratch_(static_cast<std::size_t>(source.threads)) {}
+
+  void deform(const Mesh& mesh) override {
+    mesh_ = mesh;
+    prepared_ = false;
+  }
+
+  void prepare(const Parameters& parameters, const Crew& crew) override {
+    const CurveStyle style{parameters.tangents, parameters.robust};
+    if (prepared_ && style == style_ && parameters.wedgeDegrees == wedgeDegrees_ &&
+        parameters.edgeBetas.empty())
+      return;
+    test_.prepare(mesh_, topology_, parameters, crew);
+    computeEdgeCurves(mesh_, topology_, style, crew, curves_);
+    style_ = style;
+    wedgeDegrees_ = parameters.wedgeDegrees;
+    prepared_ = parameters.edgeBetas.empty();
+  }
+
+  void refine(const View& view, const Parameters& parameters, const Crew& crew, RefinedStream& stream,
+              RefineReport& report) override {
+    Scratch& scratch = scratch_[crew.slot()];
+    if (scratch.recordOf.empty()) scratch.recordOf.assign(topology_.edges().size(), kNone);
+    Pass pass{mesh_,   topology_, test_,  curves_,         view, parameters, crew,
+              scratch, stream,    report, PixelBound(view)};
+    pass.run();
+  }
+
+  void silhouetteness(const View& view, const Parameters& parameters, std::vector<float>& alphas) override {
+    for (std::size_t e = 0; e < alphas.size(); ++e) alphas[e] = test_.alpha(view, parameters, e);
+  }
+
+ private:
+  Mesh mesh_;
+  const Topology& topology_;
+  std::vector<Scratch> scratch_;
+  EdgeTest test_;
+  std::vector<CurveOffsets> curves_;
+  CurveStyle style_;
+  float wedgeDegrees_ = 0;
+  bool prepared_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<MethodState> makeBlendedPatches(const Source& source) {
+  return std::make_unique<BlendedPatches>(source);
+}
+
+}  // namespace limn::silhouette

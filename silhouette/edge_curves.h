@@ -1,0 +1,52 @@
+// The smooth curve of every edge: view-independent, computed once for a rigid mesh and once per frame for a
+// moving one.
+//
+// Based on: C. Dyken, M. Reimers, "Real-time linear silhouette enhancement", 2004, (4)-(8); W. Wang et al.,
+// "Silhouette Smoothing for Real-Time Rendering of Mesh Surfaces", equation (L), for the circular tangent
+// length; M. Sabin's geodesic-like ends as quoted by the former. Differs in: a curve is kept as what it adds
+// to the straight edge, d_ij = c_ij - l_ij, which is exactly 0 where the normals are orthogonal to the edge
+// (linear precision to the last bit) and loses no digits far from the origin.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "silhouette/method.h"
+
+namespace limn::silhouette {
+
+/// d_ij at point[0] and d_ji at point[1] of an edge.
+using CurveOffsets = std::array<glm::vec3, 2>;
+
+/// How curves are made.
+struct CurveStyle {
+  Tangents tangents = Tangents::kProjected;
+  bool robust = false;
+
+  bool operator==(const CurveStyle&) const = default;
+};
+
+/// An edge end as the mesh has it: the normals of the two faces, the same one twice where they share it.
+struct EdgeEnd {
+  glm::vec3 normal[2];
+  bool feature = false;
+};
+
+/// The curve of one edge from p_i to p_j.
+CurveOffsets edgeCurve(const glm::vec3& pi, const glm::vec3& pj, const EdgeEnd& atI, const EdgeEnd& atJ,
+                       const CurveStyle& style);
+
+/// The curves of all edges; zero for non-manifold ones.
+void computeEdgeCurves(const Mesh& mesh, const Topology& topology, const CurveStyle& style, const Crew& crew,
+                       std::vector<CurveOffsets>& curves);
+
+/// The point at t of the cubic with inner offsets d from p to q.
+inline glm::vec3 curvePoint(const glm::vec3& p, const glm::vec3& q, const CurveOffsets& d, float t) {
+  const float s = 1.0f - t;
+  return s * p + t * q + 3.0f * s * t * (s * d[0] + t * d[1]);
+}
+
+}  // namespace limn::silhouette

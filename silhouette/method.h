@@ -1,0 +1,68 @@
+// The one signature behind which every method lives. A method is one file that defines its make… function,
+// and one row in the table of refine.cpp.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "raster/base/workers.h"
+#include "silhouette/refine.h"
+
+namespace limn::silhouette {
+
+/// Who does the work of one refinement: all threads, or one thread among others that refine other instances.
+class Crew {
+ public:
+  /// All threads of `workers`.
+  explicit Crew(Workers& workers) : workers_(&workers) {}
+  /// The calling thread alone, which holds `slot`.
+  explicit Crew(int slot) : slot_(slot) {}
+
+  /// Names the scratch memory of this refinement; no other refinement uses it at the time.
+  std::size_t slot() const { return static_cast<std::size_t>(slot_); }
+
+  /// As Workers::forBlocks: body(begin, end) for blocks of `grain` indices.
+  template <class Body>
+  void forBlocks(std::size_t count, std::size_t grain, const Body& body) const {
+    if (workers_ != nullptr) {
+      workers_->forBlocks(count, grain, [&](std::size_t begin, std::size_t end, int) { body(begin, end); });
+      return;
+    }
+    for (std::size_t begin = 0; begin < count; begin += grain) body(begin, std::min(begin + grain, count));
+  }
+
+ private:
+  Workers* workers_ = nullptr;
+  int slot_ = 0;
+};
+
+/// What a method needs to know of a mesh; borrowed.
+struct Source {
+  Mesh mesh;
+  const Topology* topology = nullptr;
+  int threads = 1;  ///< slots of scratch memory
+};
+
+class MethodState {
+ public:
+  virtual ~MethodState() = default;
+
+  /// Positions and normals are new.
+  virtual void deform(const Mesh& mesh) = 0;
+  /// Computes what does not depend on the view, where it is not there already.
+  virtual void prepare(const Parameters& parameters, const Crew& crew) = 0;
+  /// Fills a cleared stream and the counts of the report. May run for several views at a time, each with a
+  /// slot of its own.
+  virtual void refine(const View& view, const Parameters& parameters, const Crew& crew, RefinedStream& stream,
+                      RefineReport& report) = 0;
+  /// α of every edge; `alphas` has their number and holds zeros.
+  virtual void silhouetteness(const View&, const Parameters&, std::vector<float>&) {}
+};
+
+std::unique_ptr<MethodState> makeFlat(const Source& source);
+std::unique_ptr<MethodState> makeBlendedPatches(const Source& source);
+std::unique_ptr<MethodState> makePnTriangles(const Source& source);
+
+}  // namespace limn::silhouette

@@ -1,0 +1,97 @@
+#include "silhouette/silhouetteness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "raster/base/elementary.h"
+
+namespace limn::silhouette {
+namespace {
+
+using glm::dot;
+using glm::vec3;
+
+constexpr std::size_t kItemsPerBlock = 4096;
+
+// Double precision: the corners of a needle differ in their last digits only.
+vec3 unitNormal(const Mesh& mesh, std::size_t triangle) {
+  const std::uint32_t* corner = &mesh.indices[3 * triangle];
+  const glm::dvec3 a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]), c(mesh.positions[corner[2]]);
+  const glm::dvec3 normal = glm::cross(b - a, c - a);
+  const double length = glm::length(normal);
+  return length > 0.0 ? vec3(normal / length) : vec3(0.0f);
+}
+
+// From a point towards the eye, not unit.
+vec3 toEye(const View& view, const vec3& point) {
+  return view.projection.perspective ? view.eye - point : -view.direction;
+}
+
+}  // namespace
+
+float wedgeBeta(const vec3& ns, const vec3& nt, float sinPhi, float cosPhi) {
+  const float sinTheta = glm::length(glm::cross(ns, nt)), cosTheta = dot(ns, nt);
+  return std::max(0.0f, sinPhi * cosPhi * sinTheta + sinPhi * sinPhi * cosTheta);
+}
+
+void EdgeTest::prepare(const Mesh& mesh, const Topology& topology, const Parameters& parameters,
+                       const Crew& crew) {
+  mesh_ = mesh;
+  topology_ = &topology;
+  faceNormals_.resize(mesh.triangleCount());
+  crew.forBlocks(faceNormals_.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      faceNormals_[t] = topology.isDegenerate(t) ? vec3(0.0f) : unitNormal(mesh, t);
+  });
+
+  betas_.assign(parameters.edgeBetas.begin(), parameters.edgeBetas.end());
+  if (!betas_.empty() || parameters.wedgeDegrees == 0.0f) return;
+  const SinCos phi = sinCosDegrees(parameters.wedgeDegrees);
+  const std::vector<Edge>& edges = topology.edges();
+  betas_.resize(edges.size());
+  crew.forBlocks(edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e)
+      betas_[e] = edges[e].boundary ? 0.0f
+                                    : wedgeBeta(faceNormals_[edges[e].faces[0].triangle],
+                                                faceNormals_[edges[e].faces[1].triangle],
+                                                static_cast<float>(phi.sin), static_cast<float>(phi.cos));
+  });
+}
+
+// (1). At the edge's midpoint the view vector is zero, so is f, and α = 1.
+float EdgeTest::byEdge(const View& view, const Edge& edge) const {
+  const std::array<std::uint32_t, 2> ends = edgeVertices(mesh_, edge)[0];
+  const vec3 v = toEye(view, 0.5f * (mesh_.positions[ends[0]] + mesh_.positions[ends[1]]));
+  const float length2 = dot(v, v);
+  const float product =
+      dot(v, faceNormals_[edge.faces[0].triangle]) * dot(v, faceNormals_[edge.faces[1].triangle]);
+  return length2 > 0.0f ? product / length2 : 0.0f;
+}
+
+float EdgeTest::byContour(const View& view, const Edge& edge) const {
+  float low = 2.0f, high = -2.0f;
+  for (const Side& face : edge.faces) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t vertex = mesh_.indices[3 * std::size_t{face.triangle} + corner];
+      const vec3 v = toEye(view, mesh_.positions[vertex]);
+      const float length2 = dot(v, v);
+      const float facing = length2 > 0.0f ? dot(v, mesh_.normals[vertex]) / std::sqrt(length2) : 0.0f;
+      low = std::min(low, facing);
+      high = std::max(high, facing);
+    }
+  }
+  return low * high;
+}
+
+float EdgeTest::alpha(const View& view, const Parameters& parameters, std::size_t e) const {
+  const Edge& edge = topology_->edges()[e];
+  if (edge.nonManifold) return 0.0f;
+  if (edge.boundary) return parameters.boundaries ? 1.0f : 0.0f;
+  if (parameters.features && edge.isFeature()) return 1.0f;
+  const bool contour = parameters.silhouetteness == Silhouetteness::kContour;
+  const float f = contour ? byContour(view, edge) : byEdge(view, edge);
+  return silhouettenessOf(f, betas_.empty() ? parameters.beta : betas_[e]);
+}
+
+}  // namespace limn::silhouette
