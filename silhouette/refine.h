@@ -1,10 +1,10 @@
 // The refined triangle stream of a mesh for one viewpoint, by any of the methods.
 //
 //   limn::silhouette::Topology topology(mesh);                    // once, or once per change of the indices
-//   limn::silhouette::Refiner refiner(mesh, topology, workers);   // keeps what does not change from view to
-//   view refiner.refine(view, parameters, stream);                     // per frame refiner.deform(mesh)
-//   before refine() when positions and normals have changed refineAll(tasks, parameters, workers); // per
-//   frame, many instances at once
+//   limn::silhouette::Refiner refiner(mesh, topology, workers);   // keeps what does not change from view to view
+//   refiner.refine(view, parameters, stream);                     // per frame
+//   refiner.deform(mesh)                                          // when positions and normals have changed
+//   refineAll(tasks, parameters, workers);                        // per frame, many instances at once
 //
 // The view maps the mesh's own space to pixels, so instances of one mesh that differ by a similarity
 // (rotation, uniform scale, reflection, translation) share one Refiner: one topology, one set of edge curves,

@@ -44,10 +44,12 @@ struct InstanceResources {
   std::vector<glm::vec3> positions,
       normals;  ///< of a non-uniformly scaled one, placed but for the translation
   std::vector<glm::vec4> tangents;
+  silhouette::Mesh shape;  ///< as it is refined and drawn this frame
+  std::span<const glm::vec4> shapeTangents;
+  bool ownShape = false;  ///< other positions and normals than the mesh of the scene
   silhouette::RefinedStream stream;
   std::vector<glm::vec2> texcoords;  ///< of the stream's vertices
   std::vector<glm::vec4> colors, streamTangents;
-  silhouette::RefineReport report;
 };
 
 /// Rotation and uniform scale, reflections included: edge curves commute with it, so model space serves.
@@ -66,16 +68,14 @@ glm::vec3 unit(const glm::dvec3& v, const glm::vec3& otherwise) {
   return square > 0.0 ? glm::vec3(v / std::sqrt(square)) : otherwise;
 }
 
-/// Applies the linear part of a placement that is no similarity, so that normals and edge curves are those of
-/// the scaled surface.
+/// Applies the linear part of a placement that is no similarity (and no reflection), so that normals and edge curves
+/// are those of the scaled surface.
 void placeLinearly(const glm::dmat3& linear, std::span<const glm::vec3> positions,
                    std::span<const glm::vec3> normals, std::span<const glm::vec4> tangents,
                    InstanceResources& out) {
-  // The cofactor matrix is the inverse transpose without its division; a reflection flips it, which the
-  // winding of the reflected triangles does not want.
-  const double sign = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
-  const glm::dmat3 cofactor(sign * glm::cross(linear[1], linear[2]), sign * glm::cross(linear[2], linear[0]),
-                            sign * glm::cross(linear[0], linear[1]));
+  // The cofactor matrix is the inverse transpose without its division.
+  const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                            glm::cross(linear[0], linear[1]));
   out.positions.resize(positions.size());
   out.normals.resize(normals.size());
   out.tangents.resize(tangents.size());
@@ -112,6 +112,7 @@ struct FrameDrawer::State {
   raster::Renderer renderer;
   std::vector<std::unique_ptr<MeshResources>> meshes;
   std::vector<InstanceResources> instances;
+  std::vector<silhouette::RefineTask> tasks;
   std::vector<raster::Draw> draws;
   std::vector<raster::Light> lights;
 
@@ -125,60 +126,62 @@ struct FrameDrawer::State {
     return *resources;
   }
 
-  raster::Draw prepare(const Instance& instance, const CameraView& camera,
-                       const silhouette::Parameters& parameters, InstanceResources& out);
+  void place(const Instance& instance, const CameraView& camera, InstanceResources& out);
+  raster::Draw describe(const Instance& instance, const InstanceResources& resources) const;
 };
 
-/// Refines one instance for the camera and says how to draw it.
-raster::Draw FrameDrawer::State::prepare(const Instance& instance, const CameraView& camera,
-                                         const silhouette::Parameters& parameters, InstanceResources& out) {
+/// Finds where the instance's shape is and how the camera sees it.
+void FrameDrawer::State::place(const Instance& instance, const CameraView& camera, InstanceResources& out) {
   const Mesh& source = scene.meshes[instance.mesh];
   MeshResources& shared = mesh(instance.mesh);
+  out.shape = shared.shape;
+  out.shapeTangents = source.tangents;
+  if (instance.deformed()) {
+    out.shape.positions = instance.positions;
+    out.shape.normals = instance.normals;
+    out.shapeTangents = instance.tangents;
+  }
+
+  glm::dmat4 shapeToWorld = instance.toWorld;
   const glm::dmat3 linear(instance.toWorld);
   const bool similar = isSimilarity(linear);
-
-  glm::dmat4 modelToView = camera.worldToView * instance.toWorld;
-  silhouette::Mesh shape = shared.shape;
-  std::span<const glm::vec4> tangents = source.tangents;
-  if (instance.deformed()) {
-    shape.positions = instance.positions;
-    shape.normals = instance.normals;
-    tangents = instance.tangents;
-  }
   if (!similar) {
-    placeLinearly(linear, shape.positions, shape.normals, tangents, out);
-    shape.positions = out.positions;
-    shape.normals = out.normals;
-    tangents = out.tangents;
-    glm::dmat4 translation(1.0);
-    translation[3] = instance.toWorld[3];
-    modelToView = camera.worldToView * translation;
+    // toWorld = translation · mirror · (mirror · linear): what is applied here keeps the outside outside.
+    const glm::dmat3 mirror = glm::dmat3(glm::dvec3(glm::determinant(linear) < 0.0 ? -1.0 : 1.0, 0.0, 0.0),
+                                         glm::dvec3(0.0, 1.0, 0.0), glm::dvec3(0.0, 0.0, 1.0));
+    placeLinearly(mirror * linear, out.shape.positions, out.shape.normals, out.shapeTangents, out);
+    out.shape.positions = out.positions;
+    out.shape.normals = out.normals;
+    out.shapeTangents = out.tangents;
+    shapeToWorld = glm::dmat4(mirror);
+    shapeToWorld[3] = instance.toWorld[3];
   }
-  const bool ownShape = instance.deformed() || !similar;
-  if (ownShape) {
-    if (!out.refiner) out.refiner.emplace(shape, shared.topology, workers);
-    out.refiner->deform(shape);
+  out.ownShape = instance.deformed() || !similar;
+  if (out.ownShape) {
+    if (!out.refiner) out.refiner.emplace(out.shape, shared.topology, workers);
+    out.refiner->deform(out.shape);
   }
-  silhouette::Refiner& refiner = ownShape ? *out.refiner : shared.refiner;
+  silhouette::Refiner& refiner = out.ownShape ? *out.refiner : shared.refiner;
+  tasks.push_back({&refiner,
+                   silhouette::makeView(camera.projection, camera.worldToView * shapeToWorld),
+                   &out.stream,
+                   {}});
+}
 
-  const silhouette::View view = silhouette::makeView(camera.projection, modelToView);
-  refiner.refine(view, parameters, out.stream, &out.report);
-  interpolate<glm::vec2>(source, out.stream.origins, source.texcoords, out.texcoords);
-  interpolate<glm::vec4>(source, out.stream.origins, source.colors, out.colors);
-  interpolate<glm::vec4>(source, out.stream.origins, tangents, out.streamTangents);
-
+raster::Draw FrameDrawer::State::describe(const Instance& instance,
+                                          const InstanceResources& resources) const {
   raster::Draw draw;
-  draw.geometry = &shared.geometry;
-  draw.replaced = out.stream.replaced;
-  draw.stream = {{out.stream.positions, out.stream.normals, out.texcoords, out.colors, out.streamTangents},
-                 out.stream.indices,
-                 out.stream.sourceTriangles};
-  if (ownShape) {
-    draw.posedPositions = shape.positions;
-    draw.posedNormals = shape.normals;
-    draw.posedTangents = tangents;
+  draw.geometry = &meshes[instance.mesh]->geometry;
+  draw.replaced = resources.stream.replaced;
+  draw.stream = {{resources.stream.positions, resources.stream.normals, resources.texcoords, resources.colors,
+                  resources.streamTangents},
+                 resources.stream.indices,
+                 resources.stream.sourceTriangles};
+  if (resources.ownShape) {
+    draw.posedPositions = resources.shape.positions;
+    draw.posedNormals = resources.shape.normals;
+    draw.posedTangents = resources.shapeTangents;
   }
-  draw.modelToView = view.modelToView;
   return draw;
 }
 
@@ -190,13 +193,23 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
   const Clock::time_point start = Clock::now();
   State& s = *state_;
   s.instances.resize(pose.instances.size());
-  s.draws.clear();
+  s.tasks.clear();
+  for (std::size_t i = 0; i < pose.instances.size(); ++i) s.place(pose.instances[i], camera, s.instances[i]);
+  silhouette::refineAll(s.tasks, settings.refinement, s.workers);
 
+  s.draws.clear();
   std::uint32_t firstId = 0;
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
-    s.draws.push_back(s.prepare(pose.instances[i], camera, settings.refinement, s.instances[i]));
-    s.draws.back().firstId = firstId;
-    firstId += static_cast<std::uint32_t>(s.scene.meshes[pose.instances[i].mesh].indices.size() / 3);
+    const Mesh& mesh = s.scene.meshes[pose.instances[i].mesh];
+    InstanceResources& resources = s.instances[i];
+    const std::vector<silhouette::Origin>& origins = resources.stream.origins;
+    interpolate<glm::vec2>(mesh, origins, mesh.texcoords, resources.texcoords);
+    interpolate<glm::vec4>(mesh, origins, mesh.colors, resources.colors);
+    interpolate<glm::vec4>(mesh, origins, resources.shapeTangents, resources.streamTangents);
+    raster::Draw& draw = s.draws.emplace_back(s.describe(pose.instances[i], resources));
+    draw.modelToView = s.tasks[i].view.modelToView;
+    draw.firstId = firstId;
+    firstId += static_cast<std::uint32_t>(mesh.indices.size() / 3);
   }
   viewLights(s.scene, pose, camera, settings, s.lights);
   const double refineMs = millisecondsSince(start);
@@ -221,13 +234,13 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
 
   if (!statistics) return;
   statistics->refine = {};
-  for (const InstanceResources& instance : s.instances) {
-    statistics->refine.curvedTriangles += instance.report.curvedTriangles;
-    statistics->refine.refinedTriangles += instance.report.refinedTriangles;
-    statistics->refine.smoothEdges += instance.report.smoothEdges;
-    statistics->refine.cappedEdges += instance.report.cappedEdges;
-    statistics->refine.classifyMs += instance.report.classifyMs;
-    statistics->refine.refineMs += instance.report.refineMs;
+  for (const silhouette::RefineTask& task : s.tasks) {
+    statistics->refine.curvedTriangles += task.report.curvedTriangles;
+    statistics->refine.refinedTriangles += task.report.refinedTriangles;
+    statistics->refine.smoothEdges += task.report.smoothEdges;
+    statistics->refine.cappedEdges += task.report.cappedEdges;
+    statistics->refine.classifyMs += task.report.classifyMs;
+    statistics->refine.refineMs += task.report.refineMs;
   }
   statistics->refineMs = refineMs;
   statistics->rasterMs = millisecondsSince(rasterStart);

@@ -16,8 +16,8 @@ enum class LightChoice { kPeer, kHeadlight, kFile, kDirection };
 struct FrameSettings {
   silhouette::Parameters refinement;
   int samples = 4;
-  glm::vec4 background{0.0f};  ///< linear RGB, straight alpha
-  LightChoice light = LightChoice::kFile;  ///< kFile falls back to kPeer where the file has none
+  glm::vec4 background{0.0f};                  ///< linear RGB, straight alpha
+  LightChoice light = LightChoice::kFile;      ///< kFile falls back to kPeer where the file has none
   glm::dvec3 lightDirection{0.36, 0.48, 0.8};  ///< kDirection: towards the light, world space
   raster::Encoding encoding = raster::Encoding::kSrgb;
 };
