@@ -62,6 +62,7 @@ struct Pass {
   const Topology& topology;
   const EdgeTest& test;
   const std::vector<CurveOffsets>& curves;
+  const std::vector<vec3>& centers;  // of fitted patches; empty without
   const View& view;
   const Parameters& parameters;
   const Crew& crew;
@@ -166,14 +167,18 @@ void Pass::placeEdges() {
 
 Patch Pass::patchOf(std::size_t triangle) const {
   Patch patch;
+  float alphas = 0.0f;
   for (std::size_t k = 0; k < 3; ++k) {
     patch.corners[k] = mesh.positions[mesh.indices[3 * triangle + k]];
     const SmoothEdge* smooth = recordOfSide(triangle, k);
     if (smooth == nullptr) continue;
+    alphas += smooth->alpha;
     const bool ascends =
         topology.points()[mesh.indices[3 * triangle + k]] == topology.edges()[smooth->edge].point[0];
     patch.sides[k] = {smooth->offsets[ascends ? 0 : 1], smooth->offsets[ascends ? 1 : 0]};
   }
+  // The centre follows its sides: there where all three are smooth, gone where all are straight.
+  if (!centers.empty()) patch.fittedCenter = (alphas / 3.0f) * centers[triangle];
   return patch;
 }
 
@@ -303,7 +308,10 @@ void Pass::emitTriangle(std::uint32_t triangle, std::uint32_t& vertex, std::uint
 class BlendedPatches final : public MethodState {
  public:
   explicit BlendedPatches(const Source& source)
-      : mesh_(source.mesh), topology_(*source.topology), scratch_(static_cast<std::size_t>(source.threads)) {}
+      : mesh_(source.mesh),
+        topology_(*source.topology),
+        fitted_(source.fitted),
+        scratch_(static_cast<std::size_t>(source.threads)) {}
 
   void deform(const Mesh& mesh) override {
     mesh_ = mesh;
@@ -316,7 +324,10 @@ class BlendedPatches final : public MethodState {
         parameters.edgeBetas.empty())
       return;
     test_.prepare(mesh_, topology_, parameters, crew);
-    computeEdgeCurves(mesh_, topology_, style, crew, curves_);
+    if (fitted_.empty())
+      computeEdgeCurves(mesh_, topology_, style, crew, curves_);
+    else
+      placeFittedCurves(crew);
     style_ = style;
     wedgeDegrees_ = parameters.wedgeDegrees;
     prepared_ = parameters.edgeBetas.empty();
@@ -325,22 +336,55 @@ class BlendedPatches final : public MethodState {
   void refine(const View& view, const Parameters& parameters, const Crew& crew, RefinedStream& stream,
               RefineReport& report) override {
     Scratch& scratch = scratch_[crew.slot()];
+    const Parameters wanted = whereFitted(parameters);
     if (scratch.recordOf.empty()) scratch.recordOf.assign(topology_.edges().size(), kNone);
-    Pass pass{mesh_,   topology_, test_,  curves_,         view, parameters, crew,
-              scratch, stream,    report, PixelBound(view)};
+    Pass pass{mesh_,  topology_, test_,   curves_, centers_, view,
+              wanted, crew,      scratch, stream,  report,   PixelBound(view)};
     pass.run();
   }
 
   void silhouetteness(const View& view, const Parameters& parameters, std::vector<float>& alphas) override {
-    for (std::size_t e = 0; e < alphas.size(); ++e) alphas[e] = test_.alpha(view, parameters, e);
+    const Parameters wanted = whereFitted(parameters);
+    for (std::size_t e = 0; e < alphas.size(); ++e) alphas[e] = test_.alpha(view, wanted, e);
   }
 
  private:
+  // A fitted boundary is known, not guessed: always smooth.
+  Parameters whereFitted(const Parameters& parameters) const {
+    Parameters wanted = parameters;
+    wanted.boundaries = wanted.boundaries || !fitted_.empty();
+    return wanted;
+  }
+
+  void placeFittedCurves(const Crew& crew) {
+    curves_.resize(topology_.edges().size());
+    centers_.resize(mesh_.triangleCount());
+    crew.forBlocks(curves_.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t e = begin; e < end; ++e) {
+        const Edge& edge = topology_.edges()[e];
+        const std::array<std::uint32_t, 2> ends = edgeVertices(mesh_, edge)[0];
+        const std::array<vec3, 2> normals = endNormals(mesh_, edge);
+        curves_[e] = edge.nonManifold ? CurveOffsets{}
+                                      : fittedOffsets(mesh_.positions[ends[0]], mesh_.positions[ends[1]],
+                                                      normals[0], normals[1], fitted_.edges[e]);
+      }
+    });
+    crew.forBlocks(centers_.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) {
+        const std::uint32_t* corner = &mesh_.indices[3 * t];
+        centers_[t] = fittedCenter(mesh_.positions[corner[0]], mesh_.positions[corner[1]],
+                                   mesh_.positions[corner[2]], fitted_.centers[t]);
+      }
+    });
+  }
+
   Mesh mesh_;
   const Topology& topology_;
+  FittedCurves fitted_;
   std::vector<Scratch> scratch_;
   EdgeTest test_;
   std::vector<CurveOffsets> curves_;
+  std::vector<vec3> centers_;  // what a fitted patch adds to b111; empty without fitted curves
   CurveStyle style_;
   float wedgeDegrees_ = 0;
   bool prepared_ = false;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "raster/base/workers.h"
+#include "silhouette/fitted_curves.h"
 #include "silhouette/refine.h"
 
 namespace limn::silhouette {
@@ -43,6 +44,7 @@ struct Source {
   Mesh mesh;
   const Topology* topology = nullptr;
   int threads = 1;  ///< slots of scratch memory
+  FittedCurves fitted;
 };
 
 class MethodState {

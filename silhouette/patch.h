@@ -17,10 +17,13 @@ struct Patch {
   std::array<glm::vec3, 3> corners;
   /// Side k runs from corner k to corner k + 1: α d at its start and at its end.
   std::array<CurveOffsets, 3> sides{};
+  /// What a fitted patch adds to the offset of b111.
+  glm::vec3 fittedCenter{0.0f};
 
   /// The offset of b111.
   glm::vec3 centre() const {
-    return 0.25f * ((sides[0][0] + sides[0][1]) + (sides[1][0] + sides[1][1]) + (sides[2][0] + sides[2][1]));
+    return 0.25f * ((sides[0][0] + sides[0][1]) + (sides[1][0] + sides[1][1]) + (sides[2][0] + sides[2][1])) +
+           fittedCenter;
   }
 
   /// What the patch adds to the flat triangle at the weights of the corners, u + v + w = 1.

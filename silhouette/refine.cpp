@@ -68,13 +68,16 @@ struct Refiner::State {
   bool isLarge() const { return source.mesh.triangleCount() >= kLargeMesh; }
 };
 
-Refiner::Refiner(const Mesh& mesh, const Topology& topology, Workers& workers)
+Refiner::Refiner(const Mesh& mesh, const Topology& topology, Workers& workers, const FittedCurves& fitted)
     : state_(std::make_unique<State>()) {
   require(
       topology.sideEdges().size() == mesh.indices.size() && topology.points().size() == mesh.positions.size(),
       "the topology must be that of the mesh");
   require(mesh.normals.size() == mesh.positions.size(), "one normal per position");
-  state_->source = {mesh, &topology, workers.threads()};
+  require(fitted.empty() || (fitted.edges.size() == topology.edges().size() &&
+                             fitted.centers.size() == mesh.triangleCount()),
+          "fitted curves: one for each edge of the topology and one center for each triangle");
+  state_->source = {mesh, &topology, workers.threads(), fitted};
   state_->workers = &workers;
 }
 

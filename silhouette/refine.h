@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "raster/base/workers.h"
+#include "silhouette/fitted_curves.h"
 #include "silhouette/mesh.h"
 #include "silhouette/topology.h"
 
@@ -96,8 +97,9 @@ struct RefineTask;
 
 class Refiner {
  public:
-  /// Borrows mesh arrays and topology for as long as it lives.
-  Refiner(const Mesh& mesh, const Topology& topology, Workers& workers);
+  /// Borrows mesh arrays, topology and fitted curves for as long as it lives. Patches are drawn with the
+  /// fitted curves where there are any; boundary edges are then smooth from every viewpoint.
+  Refiner(const Mesh& mesh, const Topology& topology, Workers& workers, const FittedCurves& fitted = {});
   ~Refiner();
   Refiner(Refiner&&) noexcept;
   Refiner& operator=(Refiner&&) noexcept;
