@@ -59,7 +59,8 @@ class Crossing {
 Mask::Mask(int width, int height)
     : columns_(width * kSamplesPerPixel),
       rows_(height * kSamplesPerPixel),
-      words_((static_cast<std::size_t>(columns_) + 63) / 64),
+      words_((static_cast<std::size_t>(columns_) + 63) / 64 +
+             8),  // a cache line more: rows fall into all cache sets
       firstRow_(rows_) {
   require(width >= 1 && height >= 1 && width <= 2048 && height <= 2048, "a mask has 1 to 2048 pixels a side");
   bits_.assign(words_ * static_cast<std::size_t>(rows_), 0);
@@ -92,13 +93,13 @@ void Mask::fill(int y, std::int64_t begin, std::int64_t end) {
   row[last] |= tail;
 }
 
-void Mask::draw(const SampleTriangle& triangle) {
+void Mask::draw(const SampleTriangle& triangle, int rowBegin, int rowEnd) {
   std::array<int, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(), [&](int a, int b) { return triangle.y[a] < triangle.y[b]; });
   const auto [top, middle, bottom] = order;
   const auto& [x, y] = triangle;
-  const int begin = std::clamp(firstRowFrom(y[top]), 0, rows_),
-            end = std::clamp(firstRowFrom(y[bottom]), 0, rows_);
+  const int begin = std::clamp(firstRowFrom(y[top]), rowBegin, rowEnd);
+  const int end = std::clamp(firstRowFrom(y[bottom]), rowBegin, rowEnd);
   if (begin >= end) return;
   const int turn = std::clamp(firstRowFrom(y[middle]), begin, end);
   firstRow_ = std::min(firstRow_, begin);
@@ -116,8 +117,30 @@ void Mask::draw(const SampleTriangle& triangle) {
   drawRows(turn, end, middle, bottom);
 }
 
+// Band by band, so that the rows at work stay in the cache.
 void Mask::draw(std::span<const SampleTriangle> triangles) {
-  for (const SampleTriangle& triangle : triangles) draw(triangle);
+  constexpr int kBandRows = 256;
+  const int bands = (rows_ + kBandRows - 1) / kBandRows;
+  const auto forBands = [&](const SampleTriangle& triangle, const auto& body) {
+    const auto [low, high] = std::minmax({triangle.y[0], triangle.y[1], triangle.y[2]});
+    const int begin = std::clamp(firstRowFrom(low), 0, rows_), end = std::clamp(firstRowFrom(high), 0, rows_);
+    if (begin >= end) return;
+    for (int band = begin / kBandRows; band <= (end - 1) / kBandRows; ++band)
+      body(static_cast<std::size_t>(band));
+  };
+  std::vector<std::size_t> bandEnd(static_cast<std::size_t>(bands) + 1, 0);
+  for (const SampleTriangle& t : triangles) forBands(t, [&](std::size_t band) { ++bandEnd[band + 1]; });
+  for (std::size_t i = 1; i < bandEnd.size(); ++i) bandEnd[i] += bandEnd[i - 1];
+  std::vector<std::uint32_t> members(bandEnd.back());
+  std::vector<std::size_t> next = bandEnd;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    forBands(triangles[i], [&](std::size_t band) { members[next[band]++] = static_cast<std::uint32_t>(i); });
+  }
+  for (int band = 0; band < bands; ++band) {
+    const int rowBegin = band * kBandRows, rowEnd = std::min(rowBegin + kBandRows, rows_);
+    for (std::size_t i = bandEnd[band]; i < bandEnd[band + 1]; ++i)
+      draw(triangles[members[i]], rowBegin, rowEnd);
+  }
 }
 
 double Mask::area() const {
@@ -131,7 +154,9 @@ double differenceArea(const Mask& a, const Mask& b) {
   std::int64_t samples = 0;
   for (int y = std::min(a.firstRow(), b.firstRow()); y < std::max(a.endRow(), b.endRow()); ++y) {
     const auto rowA = a.row(y), rowB = b.row(y);
-    for (std::size_t i = 0; i < rowA.size(); ++i) samples += std::popcount(rowA[i] ^ rowB[i]);
+    for (std::size_t i = 0; i < rowA.size(); ++i) {
+      if (rowA[i] != rowB[i]) samples += std::popcount(rowA[i] ^ rowB[i]);
+    }
   }
   return static_cast<double>(samples) / (kSamplesPerPixel * kSamplesPerPixel);
 }

@@ -45,7 +45,7 @@ class Mask {
   double area() const;
 
  private:
-  void draw(const SampleTriangle& triangle);
+  void draw(const SampleTriangle& triangle, int rowBegin, int rowEnd);
   void fill(int y, std::int64_t begin, std::int64_t end);
 
   int columns_, rows_;

@@ -41,7 +41,7 @@ double sagitta(double radius, int n) {
 }  // namespace
 
 AnalyticSurface sphereSurface(const glm::dvec3& center, double radius) {
-  constexpr int kRows = 192;  // 8 · 192² triangles
+  constexpr int kRows = 128;  // 8 · 128² triangles
   AnalyticSurface sphere;
   for (int octant = 0; octant < 8; ++octant) {
     const glm::dvec3 sign{octant & 1 ? -1 : 1, octant & 2 ? -1 : 1, octant & 4 ? -1 : 1};

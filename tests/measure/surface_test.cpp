@@ -30,7 +30,7 @@ TEST(RandomDirections, RepeatWithTheirSeed) {
 }
 
 TEST(AnalyticSurface, StatesAnErrorFarBelowTheMasks) {
-  EXPECT_LT(sphereSurface({1, 2, 3}, 1.0).error, kPixel / 60);
+  EXPECT_LT(sphereSurface({1, 2, 3}, 1.0).error, kPixel / 30);
   EXPECT_LT(torusSurface({0, 0, 0}, 0.7, 0.3, 2).error, kPixel / 30);
   EXPECT_LT(coneSurface({0, 0, 0}, {0, 0, 1}, 1.0).error, kPixel / 30);
   EXPECT_LT(knotSurface({0, 0, 0}, 1.0).error, 3.7 * kPixel / 30);
