@@ -20,7 +20,15 @@ int run(int argc, char** argv) {
   outline->add_flag("--per-view", options.perView, "a row for every view besides");
   outline->add_option("--dump", options.dumpFolder,
                       "folder for difference pictures: red is missing, blue too much");
+  CLI::App* const coherence =
+      app.add_subcommand("coherence", "how far the outlines jump while the camera moves evenly");
+  limn::measure::addOptions(*coherence, options);
+  coherence->add_option("--arc", options.arc, "degrees of camera path")->check(CLI::Range(0.001, 360.0));
+  coherence->add_option("--step", options.steps, "degrees per frame; a list")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
+  if (coherence->parsed()) return runCoherence(options);
   return runOutline(options);
 }
 

@@ -28,7 +28,9 @@ struct Options {
   bool quick = false;
   bool perView = false;
   std::string dumpFolder;
-  silhouette::Parameters parameters;  ///< but for method and tolerance
+  double arc = 6.0;                     ///< coherence: degrees of camera path
+  std::vector<double> steps{0.4, 0.1};  ///< coherence: degrees per frame
+  silhouette::Parameters parameters;    ///< but for method and tolerance
 };
 
 void addOptions(CLI::App& command, Options& options);
@@ -50,5 +52,6 @@ double rounded(double value);
 void print(const std::vector<Json>& rows);
 
 int runOutline(const Options& options);
+int runCoherence(const Options& options);
 
 }  // namespace limn::measure
