@@ -14,8 +14,8 @@ enum class Shading { kBlinnPhong };
 enum class Encoding { kSrgb, kNone };  ///< of the RGBA8 result: sRGB curve, or the linear value as it is
 enum class AlphaMode { kOpaque, kMask, kBlend };
 
-/// Blinn–Phong: colour = base·(ambient + diffuse·max(n·l, 0)) + specular·max(n·h, 0)^shininess + emissive, per light.
-/// The defaults are the peer scene's (ambient and diffuse factors belong to the lights).
+/// Blinn–Phong: colour = base·(ambient + diffuse·max(n·l, 0)) + specular·max(n·h, 0)^shininess + emissive,
+/// per light. The defaults are the peer scene's (ambient and diffuse factors belong to the lights).
 struct Material {
   glm::vec4 baseColor{0.85f, 0.55f, 0.30f, 1.0f};  ///< linear; times vertex colour, times texture
   glm::vec3 specular{0.4f};
@@ -37,13 +37,14 @@ struct Material {
 struct Light {
   enum class Kind { kDirectional, kPoint, kSpot };
   Kind kind = Kind::kDirectional;
-  glm::vec3 toLight{0.36f, 0.48f, 0.8f};  ///< kDirectional: unit vector towards the light
-  glm::vec3 position{0.0f};               ///< kPoint, kSpot
-  glm::vec3 direction{0.0f, 0.0f, -1.0f}; ///< kSpot: unit vector it shines along
-  float spotScale = 0.0f, spotOffset = 1.0f;  ///< kSpot: angular attenuation = clamp(cos·scale + offset, 0, 1)²
-  float range = 0.0f;                     ///< kPoint, kSpot: 0 = unlimited
-  glm::vec3 color{1.0f};                  ///< linear, intensity included
-  float ambient = 0.15f;                  ///< share of `color` that reaches every surface
+  glm::vec3 toLight{0.36f, 0.48f, 0.8f};   ///< kDirectional: unit vector towards the light
+  glm::vec3 position{0.0f};                ///< kPoint, kSpot
+  glm::vec3 direction{0.0f, 0.0f, -1.0f};  ///< kSpot: unit vector it shines along
+  float spotScale = 0.0f,
+        spotOffset = 1.0f;  ///< kSpot: angular attenuation = clamp(cos·scale + offset, 0, 1)²
+  float range = 0.0f;       ///< kPoint, kSpot: 0 = unlimited
+  glm::vec3 color{1.0f};    ///< linear, intensity included
+  float ambient = 0.15f;    ///< share of `color` that reaches every surface
   float diffuse = 0.75f;
 };
 

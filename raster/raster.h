@@ -5,9 +5,10 @@
 //   limn::raster::Frame frame{...};                               // what to draw, where from, in which light
 //   renderer.draw(frame, target);                                 // per frame; allocates nothing once warm
 //
-// Conventions are those of glTF 2.0 and OpenGL: right-handed, counter-clockwise front faces, column-major matrices,
-// pixel centres at half integers, top-left fill rule. Row 0 of every image is the top one. The picture is the same to
-// the last bit for any number of threads, any instruction set and any compiler (see docs of Renderer::draw).
+// Conventions are those of glTF 2.0 and OpenGL: right-handed, counter-clockwise front faces, column-major
+// matrices, pixel centres at half integers, top-left fill rule. Row 0 of every image is the top one. The
+// picture is the same to the last bit for any number of threads, any instruction set and any compiler (see
+// docs of Renderer::draw).
 #pragma once
 
 #include <array>
@@ -41,12 +42,12 @@ struct Part {
   std::uint32_t material = 0;  ///< index into Frame::materials
 };
 
-/// The part of a mesh that does not change from frame to frame, prepared for drawing: cut into clusters with their
-/// normal cones and bounds. Keeps copies, the arrays may go.
+/// The part of a mesh that does not change from frame to frame, prepared for drawing: cut into clusters with
+/// their normal cones and bounds. Keeps copies, the arrays may go.
 class Geometry {
  public:
-  /// `indices`: three per triangle, each below vertices.positions.size(). `parts` must tile [0, triangles) in order.
-  /// Throws std::invalid_argument for anything else.
+  /// `indices`: three per triangle, each below vertices.positions.size(). `parts` must tile [0, triangles) in
+  /// order. Throws std::invalid_argument for anything else.
   Geometry(const Vertices& vertices, std::span<const std::uint32_t> indices, std::span<const Part> parts);
   ~Geometry();
   Geometry(Geometry&&) noexcept;
@@ -63,22 +64,25 @@ class Geometry {
   std::unique_ptr<Data> data_;
 };
 
-/// Triangles that are new this frame, over the geometry's vertices and some of their own: an index below the geometry's
-/// vertexCount() names a vertex of the geometry, index vertexCount() + i names vertex i of `vertices`.
+/// Triangles that are new this frame, over the geometry's vertices and some of their own: an index below the
+/// geometry's vertexCount() names a vertex of the geometry, index vertexCount() + i names vertex i of
+/// `vertices`.
 struct Stream {
   Vertices vertices;
-  std::span<const std::uint32_t> indices;          ///< three per triangle
-  std::span<const std::uint32_t> sourceTriangles;  ///< for each triangle, the one of the geometry that it replaces
+  std::span<const std::uint32_t> indices;  ///< three per triangle
+  std::span<const std::uint32_t>
+      sourceTriangles;  ///< for each triangle, the one of the geometry that it replaces
 };
 
 /// One copy of a geometry in the scene.
 struct Draw {
   const Geometry* geometry = nullptr;
-  /// Bit t % 64 of word t / 64 set: triangle t of the geometry is left out (the stream replaces it). May be empty.
+  /// Bit t % 64 of word t / 64 set: triangle t of the geometry is left out (the stream replaces it). May be
+  /// empty.
   std::span<const std::uint64_t> replaced;
   Stream stream;  ///< may be empty; its triangles are ordered by source triangle
-  /// Where the geometry's vertices are this frame if not where they were (skins, morphs): empty, or one per vertex.
-  /// Clusters are then not culled by their cones.
+  /// Where the geometry's vertices are this frame if not where they were (skins, morphs): empty, or one per
+  /// vertex. Clusters are then not culled by their cones.
   std::span<const glm::vec3> posedPositions;
   std::span<const glm::vec3> posedNormals;
   std::span<const glm::vec4> posedTangents;
@@ -102,7 +106,8 @@ struct Frame {
 struct Target {
   std::uint8_t* rgba = nullptr;  ///< RGBA8, straight alpha
   std::size_t rgbaStride = 0;    ///< in bytes, >= 4 · width
-  float* depth = nullptr;        ///< view depth (distance along -z) of the nearest sample; +infinity where nothing was drawn
+  float* depth =
+      nullptr;  ///< view depth (distance along -z) of the nearest sample; +infinity where nothing was drawn
   std::size_t depthStride = 0;
   glm::vec3* normals = nullptr;  ///< unit, view space; 0 where nothing was drawn
   std::size_t normalStride = 0;
@@ -113,24 +118,30 @@ inline constexpr std::uint32_t kNoId = 0xffffffffu;
 
 /// What a frame took. Times are of the stages' own work summed over the threads.
 struct Statistics {
-  std::uint64_t trianglesIn = 0;      ///< submitted, after replacing
-  std::uint64_t trianglesDrawn = 0;   ///< set up for at least one tile
+  std::uint64_t trianglesIn = 0;     ///< submitted, after replacing
+  std::uint64_t trianglesDrawn = 0;  ///< set up for at least one tile
   std::uint64_t pixelsShaded = 0;
   std::uint64_t pixelsCovered = 0;
   double transformMs = 0, setupMs = 0, binningMs = 0, visibilityMs = 0, shadingMs = 0, resolveMs = 0;
-  std::size_t scratchBytes = 0;       ///< held by the renderer between frames
+  std::size_t scratchBytes = 0;  ///< held by the renderer between frames
+};
+
+/// What may differ between renderers without changing a pixel.
+struct Tuning {
+  int tileWidth = 128;  ///< multiple of 16, at most 128
+  int tileHeight = 64;  ///< at most 64
 };
 
 class Renderer {
  public:
   /// `threads` >= 1 work in all, the calling one included.
-  explicit Renderer(int threads);
+  explicit Renderer(int threads, const Tuning& tuning = {});
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws the frame over every pixel of the target. Throws std::invalid_argument for a frame that breaks the rules
-  /// above (checked before anything is written).
+  /// Draws the frame over every pixel of the target. Throws std::invalid_argument for a frame that breaks the
+  /// rules above (checked before anything is written).
   void draw(const Frame& frame, const Target& target, Statistics* statistics = nullptr);
 
  private:

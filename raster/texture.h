@@ -11,11 +11,11 @@ namespace limn::raster {
 enum class Wrap { kRepeat, kMirroredRepeat, kClampToEdge };
 enum class Filter {
   kNearest,
-  kLinear,               ///< bilinear, base level only
+  kLinear,  ///< bilinear, base level only
   kNearestMipNearest,
-  kLinearMipNearest,     ///< bilinear in the nearest level
+  kLinearMipNearest,  ///< bilinear in the nearest level
   kNearestMipLinear,
-  kLinearMipLinear,      ///< trilinear
+  kLinearMipLinear,  ///< trilinear
 };
 
 struct Sampler {
@@ -28,9 +28,10 @@ class Texture {
  public:
   enum class Content { kSrgb, kLinear };  ///< colours decoded from sRGB, or numbers as they are (normal maps)
 
-  /// `rgba8`: width · height pixels, first row is v = 0. Any size from 1×1 to 16384×16384, not only powers of two.
-  /// Throws std::invalid_argument for other sizes or a span of the wrong length.
-  Texture(int width, int height, std::span<const std::uint8_t> rgba8, Content content, const Sampler& sampler);
+  /// `rgba8`: width · height pixels, first row is v = 0. Any size from 1×1 to 16384×16384, not only powers of
+  /// two. Throws std::invalid_argument for other sizes or a span of the wrong length.
+  Texture(int width, int height, std::span<const std::uint8_t> rgba8, Content content,
+          const Sampler& sampler);
   ~Texture();
   Texture(Texture&&) noexcept;
   Texture& operator=(Texture&&) noexcept;

@@ -30,11 +30,11 @@ int controlGroupQuota() {
 
 }  // namespace
 
-Workers::Workers(int threads)
-    : threads_(checkedThreads(threads)),
-      arena_(threads, 1),
-      control_(std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                     static_cast<std::size_t>(threads))) {
+Workers::Workers(int threads) : threads_(checkedThreads(threads)), arena_(threads, 1) {
+  // The least of all controls that live counts, so a control for few threads would slow other renderers down.
+  const auto count = static_cast<std::size_t>(threads);
+  if (count > tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism))
+    control_ = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, count);
   arena_.initialize();
 }
 

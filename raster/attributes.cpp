@@ -1,0 +1,92 @@
+// Interpolation planes of texture coordinates, colours and tangents: only for triangles that are seen.
+#include <array>
+
+#include "raster/tile.h"
+
+namespace limn::raster {
+namespace {
+
+struct VertexAttributes {
+  glm::vec2 texcoord{0.0F};
+  glm::vec4 color{1.0F};
+  glm::vec4 tangent{0.0F};
+};
+
+// Of a vertex of the draw: the geometry's, or the stream's beyond them.
+VertexAttributes attributesOfVertex(const Draw& draw, std::uint32_t vertex) {
+  const Geometry::Data& g = draw.geometry->data();
+  VertexAttributes a;
+  if (vertex < g.positions.size()) {
+    if (!g.texcoords.empty()) a.texcoord = g.texcoords[vertex];
+    if (!g.colors.empty()) a.color = g.colors[vertex];
+    if (!g.tangents.empty())
+      a.tangent = draw.posedTangents.empty() ? g.tangents[vertex] : draw.posedTangents[vertex];
+    return a;
+  }
+  const Vertices& v = draw.stream.vertices;
+  const std::size_t i = vertex - g.positions.size();
+  if (!v.texcoords.empty()) a.texcoord = v.texcoords[i];
+  if (!v.colors.empty()) a.color = v.colors[i];
+  if (!v.tangents.empty()) a.tangent = v.tangents[i];
+  return a;
+}
+
+using Values = std::array<float, Attributes::kCount>;
+
+Values valuesOf(const VertexAttributes& a, const Affine& toView) {
+  const auto turned = [&](int i) {
+    return (toView.m[i][0] * a.tangent.x + toView.m[i][1] * a.tangent.y) + toView.m[i][2] * a.tangent.z;
+  };
+  return {a.texcoord.x, a.texcoord.y, a.color.x, a.color.y, a.color.z,
+          a.color.w,    turned(0),    turned(1), turned(2)};
+}
+
+}  // namespace
+
+const Attributes& attributesOf(Tile& tile, Record& record) {
+  if (record.attributes != kNoRecord) return tile.attributes[record.attributes];
+  const FrameContext& context = *tile.context;
+  const TriangleRef ref = tile.refOf(record);
+  const Batch& batch = context.batches[ref.batch];
+  const ClusterSet& set = *batch.set;
+  const Cluster& cluster = set.clusters[ref.cluster];
+  const bool isLoose = (record.source & Record::kLoose) != 0;
+  const LooseTriangle* loose = isLoose ? &context.front.loose(record.source & ~Record::kLoose) : nullptr;
+  const VertexBlock* block = isLoose ? nullptr : &tile.blocks[record.source / kClusterTriangles];
+
+  std::array<Values, 3> corner;
+  std::array<float, 3> q;
+  float handedness = 0.0F;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint8_t local = set.corners[k][cluster.firstTriangle + ref.triangle];
+    const VertexAttributes a = attributesOfVertex(*batch.draw, set.vertices[cluster.firstVertex + local]);
+    corner[k] = valuesOf(a, batch.toView);
+    if (k == 0) handedness = a.tangent.w;
+    const float depth = isLoose ? loose->plane[k][3] : block->plane[local][3];
+    q[k] = context.map.perspective ? depth : 1.0F;
+  }
+  if (isLoose) {
+    const std::array<Values, 3> whole = corner;
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < Attributes::kCount; ++i)
+        corner[k][i] = (whole[0][i] * loose->weights[k].x + whole[1][i] * loose->weights[k].y) +
+                       whole[2][i] * loose->weights[k].z;
+  }
+
+  std::array<int, 3> order;
+  const PlaneBasis basis(tile.cornersOf(record, order));
+  Attributes result;
+  result.handedness = batch.mirrored ? -handedness : handedness;
+  const auto a = static_cast<std::size_t>(order[0]), b = static_cast<std::size_t>(order[1]),
+             c = static_cast<std::size_t>(order[2]);
+  for (std::size_t i = 0; i < Attributes::kCount; ++i) {
+    const float va = corner[a][i] * q[a], vb = corner[b][i] * q[b], vc = corner[c][i] * q[c];
+    const Slopes s = basis.slopes(va, vb, vc);
+    result.origin[i] = va, result.slopeX[i] = s.x, result.slopeY[i] = s.y;
+  }
+  record.attributes = static_cast<std::uint32_t>(tile.attributes.size());
+  tile.attributes.push_back(result);
+  return tile.attributes.back();
+}
+
+}  // namespace limn::raster

@@ -1,0 +1,162 @@
+#include "raster/batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+namespace limn::raster {
+namespace {
+
+constexpr std::size_t kStreamPiece = 2048;  // triangles of a stream that one batch holds
+constexpr std::size_t kPoseGrain = 4096;
+
+// Rows of the matrix that turns normals: the cofactors, with the sign that keeps the outside outside.
+void setNormalRows(const glm::mat3& m, float sign, Batch& batch) {
+  const glm::vec3 rows[3] = {
+      {m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};
+  for (int i = 0; i < 3; ++i) {
+    const glm::vec3 &a = rows[(i + 1) % 3], &b = rows[(i + 2) % 3];
+    batch.normalRows[i][0] = sign * (a.y * b.z - a.z * b.y);
+    batch.normalRows[i][1] = sign * (a.z * b.x - a.x * b.z);
+    batch.normalRows[i][2] = sign * (a.x * b.y - a.y * b.x);
+  }
+}
+
+// An upper bound of the largest singular value: the square root of the largest row sum of |MᵀM|.
+float stretchOf(const glm::mat3& m) {
+  float largest = 0.0F;
+  for (int i = 0; i < 3; ++i) {
+    float sum = 0.0F;
+    for (int j = 0; j < 3; ++j) {
+      const glm::vec3 &a = m[i], &b = m[j];
+      sum += std::fabs((a.x * b.x + a.y * b.y) + a.z * b.z);
+    }
+    largest = std::max(largest, sum);
+  }
+  return std::sqrt(largest) * 1.00001F;
+}
+
+void setTransform(const glm::mat4& modelToView, bool perspective, Batch& batch) {
+  const glm::mat3 m(modelToView);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 4; ++j) batch.toView.m[i][j] = modelToView[j][i];
+  const glm::vec3 c{m[1].y * m[2].z - m[1].z * m[2].y, m[1].z * m[2].x - m[1].x * m[2].z,
+                    m[1].x * m[2].y - m[1].y * m[2].x};
+  const float determinant = (m[0].x * c.x + m[0].y * c.y) + m[0].z * c.z;
+  batch.mirrored = determinant < 0.0F;
+  setNormalRows(m, batch.mirrored ? -1.0F : 1.0F, batch);
+  batch.stretch = stretchOf(m);
+  batch.conesHold = false;
+  if (determinant == 0.0F || !std::isfinite(determinant)) return;
+  const glm::mat3 inverse = glm::inverse(m);
+  batch.eye = perspective ? inverse * -glm::vec3(modelToView[3]) : inverse * glm::vec3(0.0F, 0.0F, 1.0F);
+  batch.conesHold = std::isfinite(batch.eye.x) && std::isfinite(batch.eye.y) && std::isfinite(batch.eye.z);
+}
+
+const glm::vec3& positionOf(const Draw& draw, std::uint32_t vertex) {
+  const auto count = draw.geometry->vertexCount();
+  if (vertex >= count) return draw.stream.vertices.positions[vertex - count];
+  return draw.posedPositions.empty() ? draw.geometry->data().positions[vertex] : draw.posedPositions[vertex];
+}
+
+const glm::vec3& normalOf(const Draw& draw, std::uint32_t vertex) {
+  const auto count = draw.geometry->vertexCount();
+  if (vertex >= count) return draw.stream.vertices.normals[vertex - count];
+  return draw.posedNormals.empty() ? draw.geometry->data().normals[vertex] : draw.posedNormals[vertex];
+}
+
+// Clusters of the stream's triangles [first, last).
+void cutStream(const Draw& draw, std::size_t first, std::size_t last, ClusterSet& set) {
+  const Geometry::Data& geometry = draw.geometry->data();
+  ClusterCutter cutter(set);
+  for (std::size_t t = first; t < last; ++t) {
+    const std::uint32_t source = draw.stream.sourceTriangles[t];
+    const std::uint32_t part = geometry.partOfTriangle.empty() ? 0 : geometry.partOfTriangle[source];
+    cutter.add(&draw.stream.indices[3 * t], static_cast<std::uint32_t>(t), geometry.parts[part].material);
+  }
+  set.points.resize(set.vertices.size());
+  for (std::size_t i = 0; i < set.vertices.size(); ++i)
+    set.points.set(i, positionOf(draw, set.vertices[i]), normalOf(draw, set.vertices[i]));
+  set.bounds.clear();
+  for (const Cluster& cluster : set.clusters) set.bounds.push_back(boundTriangles(set, cluster));
+}
+
+}  // namespace
+
+std::uint64_t Batch::order(std::uint32_t triangleOfSet) const {
+  // Within a draw: the geometry's triangles first, then the stream's.
+  const std::uint64_t within =
+      set->triangles[triangleOfSet] + (isStream ? draw->geometry->triangleCount() : 0);
+  return (static_cast<std::uint64_t>(drawIndex) << 32) | within;
+}
+
+void BatchBuilder::pose(const Draw& draw, Posed& posed, Workers& workers) const {
+  const ClusterSet& set = draw.geometry->data().set;
+  posed.points.resize(set.vertices.size());
+  posed.bounds.resize(set.clusters.size());
+  workers.forBlocks(set.vertices.size(), kPoseGrain, [&](std::size_t begin, std::size_t end, int) {
+    for (std::size_t i = begin; i < end; ++i)
+      posed.points.set(i, positionOf(draw, set.vertices[i]), normalOf(draw, set.vertices[i]));
+  });
+  workers.forBlocks(set.clusters.size(), kPoseGrain / kClusterVertices,
+                    [&](std::size_t begin, std::size_t end, int) {
+                      for (std::size_t i = begin; i < end; ++i)
+                        posed.bounds[i] = boundPoints(set.clusters[i], posed.points);
+                    });
+}
+
+std::span<const Batch> BatchBuilder::build(const Frame& frame, const ScreenMap& map, Workers& workers) {
+  batches_.clear();
+  std::size_t posedCount = 0, setCount = 0;
+  for (std::uint32_t i = 0; i < frame.draws.size(); ++i) {
+    const Draw& draw = frame.draws[i];
+    Batch batch;
+    batch.draw = &draw;
+    batch.drawIndex = i;
+    setTransform(draw.modelToView, map.perspective, batch);
+    const Geometry::Data& geometry = draw.geometry->data();
+    if (!draw.posedPositions.empty() || !draw.posedNormals.empty()) {
+      if (posedCount == posed_.size()) posed_.push_back(std::make_unique<Posed>());
+      Posed& posed = *posed_[posedCount++];
+      pose(draw, posed, workers);
+      batch.set = &geometry.set, batch.points = &posed.points, batch.bounds = posed.bounds.data();
+    } else {
+      batch.set = &geometry.set, batch.points = &geometry.set.points,
+      batch.bounds = geometry.set.bounds.data();
+    }
+    if (!geometry.set.clusters.empty()) batches_.push_back(batch);
+    batch.isStream = true;
+    for (std::size_t t = 0; t < draw.stream.sourceTriangles.size(); t += kStreamPiece) {
+      if (setCount == sets_.size()) sets_.push_back(std::make_unique<ClusterSet>());
+      batch.streamSet = setCount;
+      batch.set = sets_[setCount++].get();
+      batch.firstTriangle = static_cast<std::uint32_t>(t);
+      batches_.push_back(batch);
+    }
+  }
+  workers.forBlocks(batches_.size(), 1, [&](std::size_t begin, std::size_t, int) {
+    Batch& batch = batches_[begin];
+    if (!batch.isStream) return;
+    const std::size_t count = batch.draw->stream.sourceTriangles.size();
+    ClusterSet& set = *sets_[batch.streamSet];
+    cutStream(*batch.draw, batch.firstTriangle, std::min(count, batch.firstTriangle + kStreamPiece), set);
+    batch.points = &set.points, batch.bounds = set.bounds.data();
+  });
+  clusterCount_ = 0;
+  for (Batch& batch : batches_) {
+    batch.firstCluster = clusterCount_;
+    clusterCount_ += batch.set->clusters.size();
+  }
+  return batches_;
+}
+
+std::size_t BatchBuilder::memoryBytes() const {
+  std::size_t bytes = batches_.capacity() * sizeof(Batch);
+  for (const auto& p : posed_)
+    bytes += p->points.memoryBytes() + p->bounds.capacity() * sizeof(ClusterBounds);
+  for (const auto& s : sets_) bytes += s->memoryBytes();
+  return bytes;
+}
+
+}  // namespace limn::raster

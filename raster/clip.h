@@ -1,0 +1,34 @@
+// Triangles that are drawn one by one instead of with their cluster: those that had to be clipped, and
+// blended ones.
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "raster/transform.h"
+
+namespace limn::raster {
+
+/// Where a triangle comes from.
+struct TriangleRef {
+  std::uint32_t batch;
+  std::uint32_t cluster;   ///< of the batch's set
+  std::uint32_t triangle;  ///< of the cluster
+};
+
+struct LooseTriangle {
+  std::int32_t x[3], y[3];
+  float plane[3][4];     ///< as VertexBlock::plane
+  glm::vec3 weights[3];  ///< of the corners, in the triangle it comes from
+  TriangleRef ref;
+};
+
+/// Box of a triangle's corners.
+Box boxOf(const LooseTriangle& t);
+
+/// Appends the parts of a triangle that lie before the near plane and within the guard band.
+void clipTriangle(const Batch& batch, const TriangleRef& ref, const ScreenMap& map,
+                  std::vector<LooseTriangle>& out);
+
+}  // namespace limn::raster

@@ -1,0 +1,135 @@
+#include "raster/cluster.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn::raster {
+namespace {
+
+float dot(const glm::vec3& a, const glm::vec3& b) {
+  return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+
+glm::vec3 point(const ClusterVertices& v, std::size_t i) {
+  return {v.x[i], v.y[i], v.z[i]};
+}
+
+}  // namespace
+
+void ClusterVertices::resize(std::size_t count) {
+  for (auto* a : {&x, &y, &z, &nx, &ny, &nz}) a->resize(count + kPadding, 0.0F);
+}
+
+void ClusterVertices::set(std::size_t i, const glm::vec3& position, const glm::vec3& normal) {
+  x[i] = position.x, y[i] = position.y, z[i] = position.z;
+  nx[i] = normal.x, ny[i] = normal.y, nz[i] = normal.z;
+}
+
+std::size_t ClusterSet::memoryBytes() const {
+  return clusters.capacity() * sizeof(Cluster) + vertices.capacity() * sizeof vertices[0] +
+         3 * corners[0].capacity() + triangles.capacity() * sizeof triangles[0] + points.memoryBytes() +
+         bounds.capacity() * sizeof(ClusterBounds);
+}
+
+bool ClusterSet::isConsistent() const {
+  std::size_t nextVertex = 0, nextTriangle = 0;
+  for (const Cluster& c : clusters) {
+    if (c.firstVertex != nextVertex || c.firstTriangle != nextTriangle) return false;
+    if (c.vertexCount < 1 || c.vertexCount > kClusterVertices) return false;
+    if (c.triangleCount < 1 || c.triangleCount > kClusterTriangles) return false;
+    nextVertex += c.vertexCount;
+    nextTriangle += c.triangleCount;
+    for (std::size_t t = c.firstTriangle; t < nextTriangle; ++t)
+      for (const auto& corner : corners)
+        if (corner[t] >= c.vertexCount) return false;
+  }
+  return nextVertex == vertices.size() && nextTriangle == triangles.size();
+}
+
+ClusterCutter::ClusterCutter(ClusterSet& set) : set_(set) {
+  set.clusters.clear();
+  set.vertices.clear();
+  set.triangles.clear();
+  for (auto& corner : set.corners) corner.clear();
+}
+
+ClusterCutter::Slot& ClusterCutter::slotOf(std::uint32_t vertex) {
+  std::uint32_t i = (vertex * 2654435769U) >> 24;
+  while (holds(slots_[i]) && slots_[i].vertex != vertex) i = (i + 1) % kSlots;
+  return slots_[i];
+}
+
+bool ClusterCutter::fits(const std::uint32_t* c) {
+  const Cluster& cluster = set_.clusters.back();
+  int fresh = !holds(slotOf(c[0]));
+  fresh += !holds(slotOf(c[1])) && c[1] != c[0];
+  fresh += !holds(slotOf(c[2])) && c[2] != c[0] && c[2] != c[1];
+  return cluster.triangleCount < kClusterTriangles && cluster.vertexCount + fresh <= kClusterVertices;
+}
+
+void ClusterCutter::add(const std::uint32_t* corners, std::uint32_t triangle, std::uint32_t material) {
+  if (set_.clusters.empty() || set_.clusters.back().material != material || !fits(corners)) {
+    Cluster cluster;
+    cluster.firstVertex = static_cast<std::uint32_t>(set_.vertices.size());
+    cluster.firstTriangle = static_cast<std::uint32_t>(set_.triangles.size());
+    cluster.material = material;
+    set_.clusters.push_back(cluster);
+  }
+  Cluster& cluster = set_.clusters.back();
+  for (std::size_t k = 0; k < 3; ++k) {
+    Slot& slot = slotOf(corners[k]);
+    if (!holds(slot)) {
+      slot = {static_cast<std::uint32_t>(set_.clusters.size()), corners[k], cluster.vertexCount++};
+      set_.vertices.push_back(corners[k]);
+    }
+    set_.corners[k].push_back(static_cast<std::uint8_t>(slot.local));
+  }
+  set_.triangles.push_back(triangle);
+  ++cluster.triangleCount;
+}
+
+ClusterBounds boundPoints(const Cluster& cluster, const ClusterVertices& v) {
+  glm::vec3 low = point(v, cluster.firstVertex), high = low;
+  for (std::uint32_t i = 1; i < cluster.vertexCount; ++i) {
+    const glm::vec3 p = point(v, cluster.firstVertex + i);
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  ClusterBounds bounds;
+  bounds.center = low + (high - low) * 0.5F;
+  float square = 0.0F;
+  for (std::uint32_t i = 0; i < cluster.vertexCount; ++i) {
+    const glm::vec3 d = point(v, cluster.firstVertex + i) - bounds.center;
+    square = std::max(square, dot(d, d));
+  }
+  bounds.radius = std::sqrt(square) * 1.00001F;
+  return bounds;
+}
+
+ClusterBounds boundTriangles(const ClusterSet& set, const Cluster& cluster) {
+  const ClusterVertices& v = set.points;
+  ClusterBounds bounds = boundPoints(cluster, v);
+  std::array<glm::vec3, kClusterTriangles> normals;
+  std::size_t count = 0;
+  glm::vec3 sum(0.0F);
+  for (std::uint32_t t = cluster.firstTriangle; t < cluster.firstTriangle + cluster.triangleCount; ++t) {
+    const glm::vec3 a = point(v, cluster.firstVertex + set.corners[0][t]);
+    const glm::vec3 e = point(v, cluster.firstVertex + set.corners[1][t]) - a;
+    const glm::vec3 f = point(v, cluster.firstVertex + set.corners[2][t]) - a;
+    const glm::vec3 n{e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x};
+    const float length = std::sqrt(dot(n, n));
+    // A triangle without a reliable normal may face anywhere, so its cluster is never culled.
+    if (!(length > 1e-6F * std::sqrt(dot(e, e) * dot(f, f)))) return bounds;
+    normals[count] = n * (1.0F / length);
+    sum += normals[count++];
+  }
+  const float length = std::sqrt(dot(sum, sum));
+  if (!(length > 0.0F)) return bounds;
+  bounds.coneAxis = sum * (1.0F / length);
+  float cosine = 1.0F;
+  for (std::size_t i = 0; i < count; ++i) cosine = std::min(cosine, dot(normals[i], bounds.coneAxis));
+  if (cosine > 0.1F) bounds.coneSine = std::sqrt(std::max(0.0F, 1.0F - cosine * cosine));
+  return bounds;
+}
+
+}  // namespace limn::raster

@@ -1,0 +1,176 @@
+#include "raster/front_end.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace limn::raster {
+namespace {
+
+enum class Fate { kHidden, kWhole, kClip };
+
+float dot(const glm::vec3& a, const glm::vec3& b) {
+  return (a.x * b.x + a.y * b.y) + a.z * b.z;
+}
+
+// All triangles face away, by more than snapping to the grid could turn round.
+bool facesAway(const ClusterBounds& c, const Batch& batch, bool perspective) {
+  constexpr float kMargin = 0.02F;
+  if (!perspective)
+    return -dot(c.coneAxis, batch.eye) >= (c.coneSine + kMargin) * std::sqrt(dot(batch.eye, batch.eye));
+  const glm::vec3 d = c.center - batch.eye;
+  return dot(d, c.coneAxis) >= (c.coneSine + kMargin) * std::sqrt(dot(d, d)) + c.radius;
+}
+
+Fate classify(const ClusterBounds& bounds, const Batch& batch, const ScreenMap& map) {
+  const glm::vec3 c = batch.toView(bounds.center.x, bounds.center.y, bounds.center.z);
+  const float size = (std::fabs(c.x) + std::fabs(c.y)) + std::fabs(c.z);
+  const float r = bounds.radius * batch.stretch + size * 1e-5F;
+  const float nearest = -c.z - r, farthest = -c.z + r;
+  if (!(farthest >= map.nearPlane) || nearest > map.farPlane) return Fate::kHidden;
+  if (!(nearest > map.nearPlane)) return Fate::kClip;
+  // The sphere's box in view space, projected; the window's own edges are left to the exact box.
+  const float wide = map.perspective ? 1.0F / nearest : 1.0F,
+              narrow = map.perspective ? 1.0F / farthest : 1.0F;
+  const float halfX = map.offsetX + (kGuardPixels - 2.0F) * kSubpixels;
+  const float halfY = map.offsetY + (kGuardPixels - 2.0F) * kSubpixels;
+  const auto low = [&](float v) { return v < 0.0F ? v * wide : v * narrow; };
+  const auto high = [&](float v) { return v < 0.0F ? v * narrow : v * wide; };
+  const float sy = -map.scaleY;
+  const float x0 = low(c.x - r) * map.scaleX, x1 = high(c.x + r) * map.scaleX;
+  const float y0 = low(c.y - r) * sy, y1 = high(c.y + r) * sy;
+  if (x1 < -map.offsetX || x0 > map.offsetX || y1 < -map.offsetY || y0 > map.offsetY) return Fate::kHidden;
+  return x0 > -halfX && x1 < halfX && y0 > -halfY && y1 < halfY ? Fate::kWhole : Fate::kClip;
+}
+
+}  // namespace
+
+Tiling::Tiling(int windowWidth, int windowHeight, int tw, int th)
+    : tileWidth(tw),
+      tileHeight(th),
+      columns((windowWidth + tw - 1) / tw),
+      rows((windowHeight + th - 1) / th),
+      width(windowWidth),
+      height(windowHeight) {}
+
+TileRect tilesOf(const Box& box, const Tiling& tiling) {
+  const std::int32_t x0 = std::max(box.minX >> kSubpixelBits, 0), y0 = std::max(box.minY >> kSubpixelBits, 0);
+  const std::int32_t x1 = std::min(box.maxX >> kSubpixelBits, tiling.width - 1);
+  const std::int32_t y1 = std::min(box.maxY >> kSubpixelBits, tiling.height - 1);
+  if (x0 > x1 || y0 > y1) return {0, 0, 0, 0};
+  return {static_cast<std::uint16_t>(x0 / tiling.tileWidth),
+          static_cast<std::uint16_t>(y0 / tiling.tileHeight),
+          static_cast<std::uint16_t>(x1 / tiling.tileWidth + 1),
+          static_cast<std::uint16_t>(y1 / tiling.tileHeight + 1)};
+}
+
+void Bins::reset(const Tiling& tiling) {
+  columns_ = static_cast<std::size_t>(tiling.columns);
+  tiles_ = tiling.count();
+  cursors_.assign(kRanges * tiles_, 0);
+  starts_.resize(tiles_ + 1);
+}
+
+void Bins::count(std::size_t range, const TileRect& rect) {
+  for (std::size_t y = rect.y0; y < rect.y1; ++y)
+    for (std::size_t x = rect.x0; x < rect.x1; ++x) ++cursors_[range * tiles_ + y * columns_ + x];
+}
+
+void Bins::allocate() {
+  std::uint32_t next = 0;
+  for (std::size_t tile = 0; tile < tiles_; ++tile) {
+    starts_[tile] = next;
+    for (std::size_t range = 0; range < kRanges; ++range) {
+      const std::uint32_t count = cursors_[range * tiles_ + tile];
+      cursors_[range * tiles_ + tile] = next;
+      next += count;
+    }
+  }
+  starts_[tiles_] = next;
+  if (items_.size() < next) items_.resize(next);
+}
+
+void Bins::place(std::size_t range, const TileRect& rect, std::uint32_t item) {
+  for (std::size_t y = rect.y0; y < rect.y1; ++y)
+    for (std::size_t x = rect.x0; x < rect.x1; ++x)
+      items_[cursors_[range * tiles_ + y * columns_ + x]++] = item;
+}
+
+std::size_t Bins::memoryBytes() const {
+  return (cursors_.capacity() + starts_.capacity() + items_.capacity()) * sizeof(std::uint32_t);
+}
+
+void FrontEnd::cull(const Frame& frame, std::span<const Batch> batches, const ScreenMap& map,
+                    const Tiling& tiling, std::size_t r) {
+  Range& range = ranges_[r];
+  auto batch = std::upper_bound(batches.begin(), batches.end(), range.begin,
+                                [](std::size_t i, const Batch& b) { return i < b.firstCluster; }) -
+               1;
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    while (i - batch->firstCluster >= batch->set->clusters.size()) ++batch;
+    const auto c = static_cast<std::uint32_t>(i - batch->firstCluster);
+    const auto b = static_cast<std::uint32_t>(batch - batches.begin());
+    const Cluster& cluster = batch->set->clusters[c];
+    const ClusterBounds& bounds = batch->bounds[c];
+    range.trianglesIn += cluster.triangleCount;
+    const bool cones = batch->conesHold && !frame.materials[cluster.material].doubleSided;
+    if (cones && bounds.coneSine < 1.0F && facesAway(bounds, *batch, map.perspective)) continue;
+    const Fate fate = classify(bounds, *batch, map);
+    if (fate == Fate::kHidden) continue;
+    if (fate == Fate::kClip) {
+      for (std::uint32_t t = 0; t < cluster.triangleCount; ++t)
+        if (!batch->isReplaced(cluster.firstTriangle + t)) clipTriangle(*batch, {b, c, t}, map, range.loose);
+      continue;
+    }
+    const TileRect rect = tilesOf(boxOfCluster(*batch, cluster, map), tiling);
+    if (rect.empty()) continue;
+    visible_[range.begin + range.visible++] = {b, c, rect};
+    clusterBins_.count(r, rect);
+  }
+  for (const LooseTriangle& t : range.loose) looseBins_.count(r, tilesOf(boxOf(t), tiling));
+}
+
+void FrontEnd::run(const Frame& frame, std::span<const Batch> batches, std::size_t clusterCount,
+                   const ScreenMap& map, const Tiling& tiling, Workers& workers) {
+  clusterBins_.reset(tiling);
+  looseBins_.reset(tiling);
+  if (visible_.size() < clusterCount) visible_.resize(clusterCount);
+  workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
+    Range& range = ranges_[r];
+    range.begin = clusterCount * r / kRanges;
+    range.end = clusterCount * (r + 1) / kRanges;
+    range.visible = 0;
+    range.trianglesIn = 0;
+    range.loose.clear();
+    if (range.begin < range.end) cull(frame, batches, map, tiling, r);
+  });
+  clusterBins_.allocate();
+  looseBins_.allocate();
+  std::size_t looseCount = 0;
+  trianglesIn_ = 0;
+  for (Range& range : ranges_) {
+    range.firstLoose = looseCount;
+    looseCount += range.loose.size();
+    trianglesIn_ += range.trianglesIn;
+  }
+  if (loose_.size() < looseCount) loose_.resize(looseCount);
+  workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
+    const Range& range = ranges_[r];
+    for (std::size_t i = range.begin; i < range.begin + range.visible; ++i)
+      clusterBins_.place(r, visible_[i].tiles, static_cast<std::uint32_t>(i));
+    for (std::size_t i = 0; i < range.loose.size(); ++i) {
+      loose_[range.firstLoose + i] = range.loose[i];
+      looseBins_.place(r, tilesOf(boxOf(range.loose[i]), tiling),
+                       static_cast<std::uint32_t>(range.firstLoose + i));
+    }
+  });
+}
+
+std::size_t FrontEnd::memoryBytes() const {
+  std::size_t bytes = visible_.capacity() * sizeof(VisibleCluster) +
+                      loose_.capacity() * sizeof(LooseTriangle) + clusterBins_.memoryBytes() +
+                      looseBins_.memoryBytes();
+  for (const Range& range : ranges_) bytes += range.loose.capacity() * sizeof(LooseTriangle);
+  return bytes;
+}
+
+}  // namespace limn::raster

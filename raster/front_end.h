@@ -1,0 +1,87 @@
+// The first half of a frame: which clusters may be seen, and in which tiles.
+//
+// Work is cut into a fixed number of ranges of clusters, whatever the number of threads; every tile's list is
+// in the order of submission.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "raster/base/workers.h"
+#include "raster/batch.h"
+#include "raster/clip.h"
+
+namespace limn::raster {
+
+inline constexpr std::size_t kRanges = 32;
+
+/// The window cut into tiles.
+struct Tiling {
+  int tileWidth, tileHeight, columns, rows, width, height;
+  Tiling(int windowWidth, int windowHeight, int tileWidth, int tileHeight);
+  std::size_t count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+};
+
+/// Tiles [x0, x1) × [y0, y1).
+struct TileRect {
+  std::uint16_t x0, y0, x1, y1;
+  bool empty() const { return x0 >= x1 || y0 >= y1; }
+};
+TileRect tilesOf(const Box& box, const Tiling& tiling);
+
+/// Lists of items by tile: counted by all ranges, then placed by all ranges.
+class Bins {
+ public:
+  void reset(const Tiling& tiling);
+  void count(std::size_t range, const TileRect& rect);
+  void allocate();  ///< between counting and placing
+  void place(std::size_t range, const TileRect& rect, std::uint32_t item);
+  std::span<const std::uint32_t> of(std::size_t tile) const {
+    return {items_.data() + starts_[tile], items_.data() + starts_[tile + 1]};
+  }
+  std::size_t memoryBytes() const;
+
+ private:
+  std::size_t columns_ = 0, tiles_ = 0;
+  std::vector<std::uint32_t> cursors_;  // range · tiles + tile
+  std::vector<std::uint32_t> starts_;
+  std::vector<std::uint32_t> items_;
+};
+
+/// A cluster that may be seen.
+struct VisibleCluster {
+  std::uint32_t batch, cluster;
+  TileRect tiles;
+};
+
+class FrontEnd {
+ public:
+  void run(const Frame& frame, std::span<const Batch> batches, std::size_t clusterCount, const ScreenMap& map,
+           const Tiling& tiling, Workers& workers);
+
+  const VisibleCluster& cluster(std::uint32_t item) const { return visible_[item]; }
+  const LooseTriangle& loose(std::uint32_t item) const { return loose_[item]; }
+  const Bins& clusterBins() const { return clusterBins_; }
+  const Bins& looseBins() const { return looseBins_; }
+  std::uint64_t trianglesIn() const { return trianglesIn_; }
+  std::size_t memoryBytes() const;
+
+ private:
+  struct Range {
+    std::size_t begin = 0, end = 0, visible = 0, firstLoose = 0;
+    std::vector<LooseTriangle> loose;
+    std::uint64_t trianglesIn = 0;
+  };
+  void cull(const Frame& frame, std::span<const Batch> batches, const ScreenMap& map, const Tiling& tiling,
+            std::size_t r);
+
+  std::array<Range, kRanges> ranges_;
+  std::vector<VisibleCluster> visible_;  // of range r at [ranges_[r].begin, + visible)
+  std::vector<LooseTriangle> loose_;
+  Bins clusterBins_, looseBins_;
+  std::uint64_t trianglesIn_ = 0;
+};
+
+}  // namespace limn::raster

@@ -1,0 +1,151 @@
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "raster/base/check.h"
+#include "raster/base/workers.h"
+#include "raster/batch.h"
+#include "raster/front_end.h"
+#include "raster/tile.h"
+
+namespace limn::raster {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double msSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+template <class T>
+bool matches(std::span<const T> optional, std::size_t count) {
+  return optional.empty() || optional.size() == count;
+}
+
+void requireValid(const Draw& draw) {
+  require(draw.geometry != nullptr, "a draw needs a geometry");
+  const std::size_t vertices = draw.geometry->vertexCount(), triangles = draw.geometry->triangleCount();
+  require(draw.replaced.empty() || draw.replaced.size() * 64 >= triangles,
+          "replaced: one bit per triangle, or none");
+  require(matches(draw.posedPositions, vertices), "posedPositions: one per vertex, or none");
+  require(matches(draw.posedNormals, vertices), "posedNormals: one per vertex, or none");
+  require(matches(draw.posedTangents, vertices), "posedTangents: one per vertex, or none");
+  const Stream& s = draw.stream;
+  require(s.indices.size() == 3 * s.sourceTriangles.size(), "stream: three indices per source triangle");
+  require(s.vertices.normals.size() == s.vertices.positions.size(), "stream: normals as many as positions");
+  require(matches(s.vertices.texcoords, s.vertices.positions.size()),
+          "stream: texcoords as many as positions");
+  require(matches(s.vertices.colors, s.vertices.positions.size()), "stream: colors as many as positions");
+  require(matches(s.vertices.tangents, s.vertices.positions.size()), "stream: tangents as many as positions");
+  for (int column = 0; column < 4; ++column)
+    for (int row = 0; row < 4; ++row)
+      require(std::isfinite(draw.modelToView[column][row]), "modelToView must be finite");
+}
+
+void requireValid(const Frame& frame, const Target& target) {
+  const Projection& p = frame.projection;
+  require(p.width >= 1 && p.width <= 16384 && p.height >= 1 && p.height <= 16384, "sizes are 1 to 16384");
+  require(p.pixelsX > 0 && p.pixelsY > 0 && std::isfinite(p.pixelsX) && std::isfinite(p.pixelsY),
+          "pixelsX and pixelsY must be positive");
+  require(std::isfinite(p.nearPlane) && std::isfinite(p.farPlane) && p.farPlane > p.nearPlane,
+          "farPlane must lie beyond nearPlane");
+  require(!p.perspective || p.nearPlane > 0, "a perspective's nearPlane must be positive");
+  require(frame.samples == 1 || frame.samples == 4 || frame.samples == 8, "samples are 1, 4 or 8");
+  require(target.rgba != nullptr && target.rgbaStride >= 4 * static_cast<std::size_t>(p.width),
+          "the target needs rgba rows of 4 bytes per pixel");
+  for (const Material& m : frame.materials)
+    require(m.shininess >= 1 && m.shininess <= 1024, "shininess is 1 to 1024");
+  for (const Draw& draw : frame.draws) {
+    requireValid(draw);
+    for (const Part& part : draw.geometry->data().parts)
+      require(part.triangleCount == 0 || part.material < frame.materials.size(),
+              "a part's material must be given");
+  }
+}
+
+void requireValidStreams(const Frame& frame, Workers& workers) {
+  constexpr std::size_t kGrain = 16384;
+  for (const Draw& draw : frame.draws) {
+    const std::size_t vertices = draw.geometry->vertexCount() + draw.stream.vertices.positions.size();
+    const std::size_t triangles = draw.geometry->triangleCount();
+    std::atomic<bool> valid = true;
+    workers.forBlocks(draw.stream.sourceTriangles.size(), kGrain,
+                      [&](std::size_t begin, std::size_t end, int) {
+                        bool good = true;
+                        for (std::size_t t = begin; t < end; ++t)
+                          good &= draw.stream.sourceTriangles[t] < triangles;
+                        for (std::size_t i = 3 * begin; i < 3 * end; ++i)
+                          good &= draw.stream.indices[i] < vertices;
+                        if (!good) valid = false;
+                      });
+    require(valid, "stream: an index or source triangle is out of range");
+  }
+}
+
+}  // namespace
+
+struct Renderer::State {
+  State(int threads, const Tuning& t)
+      : workers(threads), tuning(t), tiles(static_cast<std::size_t>(threads)) {}
+
+  Workers workers;
+  Tuning tuning;
+  BatchBuilder batches;
+  FrontEnd front;
+  std::vector<Tile> tiles;  // one per thread
+};
+
+Renderer::Renderer(int threads, const Tuning& tuning) {
+  require(tuning.tileWidth >= 16 && tuning.tileWidth <= 128 && tuning.tileWidth % 16 == 0 &&
+              tuning.tileHeight >= 1 && tuning.tileHeight <= 64,
+          "tiles are multiples of 16 up to 128 wide and 1 to 64 high");
+  state_ = std::make_unique<State>(threads, tuning);
+}
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+void Renderer::draw(const Frame& frame, const Target& target, Statistics* statistics) {
+  requireValid(frame, target);
+  State& s = *state_;
+  requireValidStreams(frame, s.workers);
+
+  const ScreenMap map(frame.projection);
+  const Tiling tiling(map.width, map.height, s.tuning.tileWidth, s.tuning.tileHeight);
+  const auto start = Clock::now();
+  const std::span<const Batch> batches = s.batches.build(frame, map, s.workers);
+  const double transformMs = msSince(start);
+  s.front.run(frame, batches, s.batches.clusterCount(), map, tiling, s.workers);
+  const double binningMs = msSince(start) - transformMs;
+
+  const FrameContext context{frame, target, map, tiling, batches, s.front, samplePattern(frame.samples)};
+  for (Tile& tile : s.tiles) tile.statistics = {};
+  s.workers.forBlocks(tiling.count(), 1, [&](std::size_t index, std::size_t, int slot) {
+    Tile& tile = s.tiles[static_cast<std::size_t>(slot)];
+    const auto begin = Clock::now();
+    tile.begin(context, index);
+    resolveVisibility(tile);
+    const double visibilityMs = msSince(begin);
+    shadeTile(tile);
+    tile.statistics.visibilityMs += visibilityMs;
+    tile.statistics.shadingMs += msSince(begin) - visibilityMs;
+  });
+
+  if (statistics == nullptr) return;
+  *statistics = {};
+  statistics->transformMs = transformMs;
+  statistics->binningMs = binningMs;
+  statistics->trianglesIn = s.front.trianglesIn();
+  statistics->scratchBytes = s.batches.memoryBytes() + s.front.memoryBytes();
+  for (const Tile& tile : s.tiles) {
+    statistics->trianglesDrawn += tile.statistics.trianglesDrawn;
+    statistics->pixelsShaded += tile.statistics.pixelsShaded;
+    statistics->pixelsCovered += tile.statistics.pixelsCovered;
+    statistics->visibilityMs += tile.statistics.visibilityMs;
+    statistics->shadingMs += tile.statistics.shadingMs;
+    statistics->scratchBytes += tile.memoryBytes();
+  }
+}
+
+}  // namespace limn::raster

@@ -1,0 +1,69 @@
+#include "raster/tile.h"
+
+#include <algorithm>
+
+namespace limn::raster {
+
+void Tile::begin(const FrameContext& c, std::size_t index) {
+  context = &c;
+  const Tiling& tiling = c.tiling;
+  const auto columns = static_cast<std::size_t>(tiling.columns);
+  left = static_cast<int>(index % columns) * tiling.tileWidth;
+  top = static_cast<int>(index / columns) * tiling.tileHeight;
+  width = std::min(tiling.tileWidth, tiling.width - left);
+  height = std::min(tiling.tileHeight, tiling.height - top);
+  stride = tiling.tileWidth;
+  clusters = c.front.clusterBins().of(index);
+  loose = c.front.looseBins().of(index);
+  const std::size_t samples =
+      c.samples.size() * static_cast<std::size_t>(stride) * static_cast<std::size_t>(tiling.tileHeight);
+  depth.assign(samples, c.map.farDepth);
+  ids.assign(samples, kNoRecord);
+  records.clear();
+  attributes.clear();
+  if (blocks.size() < clusters.size()) blocks.resize(clusters.size());
+}
+
+TriangleRef Tile::refOf(const Record& record) const {
+  if ((record.source & Record::kLoose) != 0) return context->front.loose(record.source & ~Record::kLoose).ref;
+  const VisibleCluster& v = context->front.cluster(clusters[record.source / kClusterTriangles]);
+  return {v.batch, v.cluster, record.source % kClusterTriangles};
+}
+
+Corners Tile::cornersOf(const Record& record, std::array<int, 3>& order) const {
+  Corners c;
+  if ((record.source & Record::kLoose) != 0) {
+    const LooseTriangle& t = context->front.loose(record.source & ~Record::kLoose);
+    std::copy(t.x, t.x + 3, c.x);
+    std::copy(t.y, t.y + 3, c.y);
+  } else {
+    const TriangleRef ref = refOf(record);
+    const ClusterSet& set = *context->batches[ref.batch].set;
+    const VertexBlock& block = blocks[record.source / kClusterTriangles];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint8_t i = set.corners[k][set.clusters[ref.cluster].firstTriangle + ref.triangle];
+      c.x[k] = block.x[i], c.y[k] = block.y[i];
+    }
+  }
+  order = {0, 1, 2};
+  if (signedArea(c) < 0) {
+    std::swap(c.x[1], c.x[2]);
+    std::swap(c.y[1], c.y[2]);
+    order = {0, 2, 1};
+  }
+  return c;
+}
+
+std::uint64_t Tile::orderOf(const Record& record) const {
+  const TriangleRef ref = refOf(record);
+  const Batch& batch = context->batches[ref.batch];
+  return batch.order(batch.set->clusters[ref.cluster].firstTriangle + ref.triangle);
+}
+
+std::size_t Tile::memoryBytes() const {
+  return depth.capacity() * sizeof(float) + ids.capacity() * sizeof(std::uint32_t) +
+         records.capacity() * sizeof(Record) + blocks.capacity() * sizeof(VertexBlock) +
+         attributes.capacity() * sizeof(Attributes);
+}
+
+}  // namespace limn::raster

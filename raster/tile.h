@@ -1,0 +1,93 @@
+// What the owner of a tile works in: depth and triangle per sample, and the triangles that were seen.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "raster/clip.h"
+#include "raster/front_end.h"
+#include "raster/samples.h"
+#include "raster/transform.h"
+#include "raster/triangle.h"
+
+namespace limn::raster {
+
+/// All of a frame that tiles read.
+struct FrameContext {
+  const Frame& frame;
+  const Target& target;
+  const ScreenMap& map;
+  const Tiling& tiling;
+  std::span<const Batch> batches;
+  const FrontEnd& front;
+  std::span<const SamplePosition> samples;
+};
+
+inline constexpr std::uint32_t kNoRecord = 0xffffffffU;
+
+/// A triangle that won at least one sample: the planes of its normal · q and depth, and where it comes from.
+struct alignas(64) Record {
+  float origin[4], slopeX[4], slopeY[4];
+  std::int32_t x0, y0;   ///< where the planes are anchored
+  std::uint32_t source;  ///< cluster of the tile · kClusterTriangles + triangle, or kLoose + loose triangle
+  std::uint32_t attributes;  ///< index into Tile::attributes, or kNoRecord: not asked for yet
+
+  static constexpr std::uint32_t kLoose = 0x80000000U;
+
+  float value(int i, std::int32_t x, std::int32_t y) const {
+    return (origin[i] + slopeY[i] * static_cast<float>(y - y0)) + slopeX[i] * static_cast<float>(x - x0);
+  }
+};
+
+/// The planes of what else materials interpolate, each value times q.
+struct Attributes {
+  enum { kU, kV, kRed, kGreen, kBlue, kAlpha, kTangentX, kTangentY, kTangentZ, kCount };
+  float origin[kCount], slopeX[kCount], slopeY[kCount];
+  float handedness;  ///< of the tangent frame; 0: the triangle has none
+};
+
+/// One thread's memory for tiles, used again from tile to tile and frame to frame.
+class Tile {
+ public:
+  /// Empties the tile at column, row of the tiling.
+  void begin(const FrameContext& context, std::size_t index);
+
+  std::size_t offset(int sample, int x, int y) const {  ///< x, y from the tile's corner
+    return (static_cast<std::size_t>(sample) * static_cast<std::size_t>(height) +
+            static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(stride) +
+           static_cast<std::size_t>(x);
+  }
+  /// Where a record's triangle comes from.
+  TriangleRef refOf(const Record& record) const;
+  /// Its corners on the sub-pixel grid, in drawing order; indices[i] says which corner of the triangle they
+  /// are.
+  Corners cornersOf(const Record& record, std::array<int, 3>& order) const;
+  /// Submission order.
+  std::uint64_t orderOf(const Record& record) const;
+  std::size_t memoryBytes() const;
+
+  const FrameContext* context = nullptr;
+  int left = 0, top = 0;      ///< of the tile in the window, pixels
+  int width = 0, height = 0;  ///< less at the window's edges
+  int stride = 0;
+  std::vector<float> depth;        // by offset()
+  std::vector<std::uint32_t> ids;  // record that won the sample
+  std::vector<Record> records;
+  std::vector<Attributes> attributes;
+  std::vector<VertexBlock> blocks;  // of the tile's clusters
+  std::span<const std::uint32_t> clusters, loose;
+  Statistics statistics;
+};
+
+/// Planes of texture coordinates, colours and tangents of a record; made when first asked for.
+const Attributes& attributesOf(Tile& tile, Record& record);
+
+/// Depth and triangle of every sample of the tile.
+void resolveVisibility(Tile& tile);
+/// Colours, and the other planes, from them.
+void shadeTile(Tile& tile);
+
+}  // namespace limn::raster
