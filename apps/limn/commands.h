@@ -1,0 +1,15 @@
+// One function per command. They return the exit status of contract and manual and throw what ends them.
+#pragma once
+
+#include "apps/limn/options.h"
+
+namespace limn::program {
+
+enum ExitStatus { kDone = 0, kFault = 1, kUsage = 2, kBadInput = 3, kNotWritten = 4, kDifferent = 5 };
+
+int render(const RenderOptions& options);
+int info(const InfoOptions& options);
+int compare(const CompareOptions& options);
+int models();
+
+}  // namespace limn::program

@@ -1,0 +1,47 @@
+// The command line, read.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/limn/job.h"
+
+namespace limn::program {
+
+struct RenderOptions {
+  JobOptions job;
+  std::optional<std::string> frames;
+  std::optional<std::string> output;
+  bool rgba = false;  ///< raw rows instead of PNG
+  int compression = 1;
+  int threads = 1;
+  bool hash = false;
+  std::optional<std::string> statistics, manifest;
+  std::pair<int, int> shard{1, 1};
+  bool skipExisting = false, dryRun = false, quiet = false;
+};
+
+struct InfoOptions {
+  std::string model = "builtin:demo";
+  bool json = false;
+};
+
+struct CompareOptions {
+  std::string first, second;
+  std::optional<std::string> output;
+};
+
+struct CommandLine {
+  enum class Command { kRender, kInfo, kCompare, kModels, kPrinted };
+  Command command = Command::kPrinted;  ///< kPrinted: help or version, already on standard output
+  RenderOptions render;
+  InfoOptions info;
+  CompareOptions compare;
+};
+
+/// Throws UsageError.
+CommandLine readCommandLine(int count, const char* const* arguments);
+
+}  // namespace limn::program

@@ -1,0 +1,232 @@
+// limn render: the frames of a job, or those of them that this run is to draw.
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "apps/limn/commands.h"
+#include "apps/limn/frame_writer.h"
+#include "apps/limn/terminal.h"
+#include "apps/limn/values.h"
+#include "apps/scene/load.h"
+
+namespace limn::program {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// The frames of this run: a shard of the list that the user gave.
+class Selection {
+ public:
+  Selection(const RenderOptions& options, int jobFrames)
+      : list_(options.frames ? FrameList::parse(*options.frames) : FrameList::all(jobFrames)),
+        shard_(options.shard) {
+    if (list_.largest() > jobFrames)
+      throw UsageError("--frames: frame " + std::to_string(list_.largest()) +
+                       " is beyond the end of the job, which has " +
+                       (jobFrames == 1 ? "one frame; --turntable and --animation make more"
+                                       : std::to_string(jobFrames) + " frames"));
+  }
+
+  int listed() const { return list_.count(); }
+  int count() const { return (list_.count() - shard_.first + shard_.second) / shard_.second; }
+  int frame(int position) const { return list_.at(shard_.first - 1 + position * shard_.second); }
+
+ private:
+  FrameList list_;
+  std::pair<int, int> shard_;
+};
+
+/// Combinations of options that make no sense, before anything is loaded.
+void checkOutput(const RenderOptions& o) {
+  if (!o.output) {
+    if (!o.hash && !o.dryRun && !o.statistics)
+      throw UsageError("no output; name one with -o, like -o picture.png");
+    if (o.manifest || o.skipExisting)
+      throw UsageError("--manifest and --skip-existing need files; name them with -o");
+    return;
+  }
+  if (*o.output == "-") {
+    if (o.hash)
+      throw UsageError("--hash prints on standard output, and so does -o -; write the frames to files");
+    if (o.skipExisting || o.manifest)
+      throw UsageError("--manifest and --skip-existing need files; -o - makes none");
+    if (::isatty(STDOUT_FILENO) == 1 && !o.dryRun)
+      throw UsageError("standard output is a terminal; redirect it to a file or a pipe");
+    return;
+  }
+  if (o.rgba && o.skipExisting)
+    throw UsageError("--skip-existing needs PNG files: raw rows do not say what they are");
+  const std::size_t dot = o.output->rfind('.');
+  const std::string extension = dot == std::string::npos ? "" : o.output->substr(dot);
+  for (const char* other :
+       {".jpg", ".jpeg", ".webp", ".gif", ".bmp", ".tif", ".tiff", ".exr", ".mp4", ".webm"})
+    if (extension == other) throw UsageError("limn writes PNG, not " + extension + "; name the output .png");
+}
+
+/// Sums over the frames drawn.
+struct Totals {
+  int drawn = 0, skipped = 0;
+  double loadMs = 0, prepareMs = 0, poseMs = 0, refineMs = 0, rasterMs = 0, totalMs = 0;
+  scene::FrameStatistics sum;
+
+  void add(const scene::FrameStatistics& frame) {
+    ++drawn;
+    refineMs += frame.refineMs;
+    rasterMs += frame.rasterMs;
+    raster::Statistics& r = sum.raster;
+    r.trianglesIn += frame.raster.trianglesIn;
+    r.trianglesDrawn += frame.raster.trianglesDrawn;
+    r.pixelsShaded += frame.raster.pixelsShaded;
+    r.pixelsCovered += frame.raster.pixelsCovered;
+    r.transformMs += frame.raster.transformMs;
+    r.setupMs += frame.raster.setupMs;
+    r.binningMs += frame.raster.binningMs;
+    r.visibilityMs += frame.raster.visibilityMs;
+    r.shadingMs += frame.raster.shadingMs;
+    r.resolveMs += frame.raster.resolveMs;
+    r.scratchBytes = frame.raster.scratchBytes;
+    sum.refine.curvedTriangles += frame.refine.curvedTriangles;
+    sum.refine.refinedTriangles += frame.refine.refinedTriangles;
+    sum.refine.smoothEdges += frame.refine.smoothEdges;
+    sum.refine.cappedEdges += frame.refine.cappedEdges;
+  }
+};
+
+std::string statisticsJson(const Totals& t, const WriterTimes& writer, const RenderOptions& options) {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  const raster::Statistics& r = t.sum.raster;
+  nlohmann::ordered_json json;
+  json["limn"] = LIMN_VERSION;
+  json["threads"] = options.threads;
+  json["frames"] = {{"drawn", t.drawn},
+                    {"skipped", t.skipped},
+                    {"per_second", t.totalMs > 0 ? 1000.0 * t.drawn / t.totalMs : 0.0}};
+  json["counts"] = {{"triangles_in", r.trianglesIn},
+                    {"triangles_drawn", r.trianglesDrawn},
+                    {"curved_triangles", t.sum.refine.curvedTriangles},
+                    {"refined_triangles", t.sum.refine.refinedTriangles},
+                    {"smooth_edges", t.sum.refine.smoothEdges},
+                    {"capped_edges", t.sum.refine.cappedEdges},
+                    {"pixels_covered", r.pixelsCovered},
+                    {"pixels_shaded", r.pixelsShaded},
+                    {"bytes_written", writer.bytes}};
+  json["milliseconds"] = {
+      {"load", t.loadMs},          {"prepare", t.prepareMs},  {"pose", t.poseMs},
+      {"refine", t.refineMs},      {"raster", t.rasterMs},    {"hash", writer.hashMs},
+      {"encode", writer.encodeMs}, {"write", writer.writeMs}, {"frames_total", t.totalMs}};
+  json["raster_thread_milliseconds"] = {{"transform", r.transformMs}, {"setup", r.setupMs},
+                                        {"binning", r.binningMs},     {"visibility", r.visibilityMs},
+                                        {"shading", r.shadingMs},     {"resolve", r.resolveMs}};
+  json["memory"] = {{"peak_bytes", usage.ru_maxrss * 1024L}, {"raster_scratch_bytes", r.scratchBytes}};
+  return json.dump(2) + "\n";
+}
+
+/// What limn::require says, without the function that said it.
+std::string reason(const std::invalid_argument& error) {
+  const std::string text = error.what();
+  const std::size_t colon = text.find(": ");
+  return colon == std::string::npos ? text : text.substr(colon + 2);
+}
+
+void listFrames(const Selection& selection, const OutputPattern* pattern) {
+  for (int i = 0; i < selection.count(); ++i) {
+    const int frame = selection.frame(i);
+    std::cout << frame << ' '
+              << (pattern == nullptr            ? ""
+                  : pattern->isStandardOutput() ? "-"
+                                                : pattern->path(frame))
+              << '\n';
+  }
+  std::cout << std::flush;
+}
+
+/// Draws frame after frame while earlier ones are finished.
+void drawFrames(const scene::Scene& scene, const Job& job, const Selection& selection,
+                const RenderOptions& options, FrameWriter& writer, Totals& totals) {
+  scene::FrameDrawer drawer(scene, options.threads);
+  const std::size_t bytes =
+      4 * static_cast<std::size_t>(options.job.width) * static_cast<std::size_t>(options.job.height);
+  Pipeline pipeline(options.threads, bytes, [&](Picture& picture) { writer.finish(picture); });
+  Progress progress(selection.count(), options.quiet);
+  scene::Pose pose;
+  scene::FrameStatistics statistics;
+  for (int position = 0; position < selection.count(); ++position) {
+    std::unique_ptr<Picture> picture = pipeline.acquire();
+    picture->position = position;
+    picture->frame = selection.frame(position);
+    picture->existing = options.skipExisting && writer.isThere(picture->frame, picture->hash);
+    if (picture->existing) {
+      ++totals.skipped;
+    } else {
+      const Clock::time_point start = Clock::now();
+      job.pose(picture->frame, pose);
+      totals.poseMs += millisecondsSince(start);
+      drawer.draw(pose, job.camera(picture->frame, pose), job.settings(picture->frame), picture->image,
+                  &statistics);
+      totals.add(statistics);
+    }
+    pipeline.submit(std::move(picture));
+    progress.show(position + 1, totals.skipped);
+  }
+  pipeline.drain();
+}
+
+}  // namespace
+
+int render(const RenderOptions& options) {
+  checkOutput(options);
+  std::optional<OutputPattern> pattern;
+  if (options.output) pattern.emplace(*options.output);
+
+  Totals totals;
+  Clock::time_point start = Clock::now();
+  const scene::Scene scene = scene::load(options.job.model, {options.job.creaseDegrees});
+  totals.loadMs = millisecondsSince(start);
+  if (!options.quiet)
+    for (const std::string& notice : scene.notices) printMessage("note: " + notice);
+
+  start = Clock::now();
+  std::optional<Job> job;
+  try {
+    job.emplace(scene, options.job);
+    scene::Pose pose;
+    job->pose(1, pose);
+    job->camera(1, pose);
+  } catch (const std::invalid_argument& error) {
+    throw UsageError("the camera cannot be used: " + reason(error));
+  }
+  const Selection selection(options, job->frameCount());
+  if (pattern && !pattern->hasNumber() && !pattern->isStandardOutput() && selection.listed() > 1)
+    throw UsageError(std::to_string(selection.listed()) + " frames do not fit into one file '" +
+                     *options.output + "'; give a pattern like frames/%04d.png");
+  totals.prepareMs = millisecondsSince(start);
+
+  if (options.dryRun && !options.hash) {
+    listFrames(selection, pattern ? &*pattern : nullptr);
+    return kDone;
+  }
+  const bool writes = pattern && !options.dryRun;
+  if (writes && !pattern->isStandardOutput() && selection.count() > 0)
+    scene::makeDirectoriesOf(pattern->path(selection.frame(0)));
+  FrameWriter writer(*job, options, writes ? &*pattern : nullptr, selection.count());
+  start = Clock::now();
+  drawFrames(scene, *job, selection, options, writer, totals);
+  totals.totalMs = millisecondsSince(start);
+
+  if (options.statistics) {
+    const std::string json = statisticsJson(totals, writer.times(), options);
+    scene::makeDirectoriesOf(*options.statistics);
+    scene::writeFileWhole(*options.statistics, json.data(), json.size());
+  }
+  return kDone;
+}
+
+}  // namespace limn::program
