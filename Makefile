@@ -1,5 +1,6 @@
 # A thin front of the CMake presets. On a Debian machine `make demo` and `make check` install what is missing.
 SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
 
 # What building, drawing and testing need.
 PACKAGES := g++ cmake ninja-build pkg-config git \
@@ -39,7 +40,7 @@ bench-packages: packages
 	$(call install,$(BENCH_PACKAGES))
 
 # $(call compile,PRESET,TARGETS)
-compile = cmake --preset $(1) --log-level=WARNING >/dev/null && cmake --build --preset $(1) $(if $(2),--target $(2)) | tail -n 1
+compile = cmake --preset $(1) --log-level=WARNING >/dev/null && cmake --build --preset $(1) $(if $(2),--target $(2)) -- --quiet
 
 build: packages
 	@$(call compile,release)

@@ -10,7 +10,7 @@ for compiler in g++ clang++ clang++-19; do
     build=build/matrix/$compiler-O$level
     cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Matrix \
       -DCMAKE_CXX_FLAGS_MATRIX="-O$level" >/dev/null  # assertions on
-    cmake --build "$build" | tail -n 1
+    cmake --build "$build" -- --quiet
     builds+=("$build")
   done
 done
