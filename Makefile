@@ -43,7 +43,7 @@ bench-packages: packages
 compile = cmake --preset $(1) --log-level=WARNING >/dev/null && cmake --build --preset $(1) $(if $(2),--target $(2)) -- --quiet
 
 build: packages
-	@$(call compile,release)
+	@$(call compile,release,apps/all bench/all)
 
 demo: build
 	@build/release/apps/limn render builtin:demo --method flat -o out/demo-flat.png
