@@ -282,10 +282,7 @@ CLI::App* addRender(CLI::App& app, RenderOptions& o) {
 CommandLine readCommandLine(int count, const char* const* arguments) {
   CommandLine line;
   line.render.threads = availableThreads();
-  CLI::App app(
-      "limn draws coarse triangle meshes with smooth silhouettes, on the CPU, the same to the last bit "
-      "everywhere.",
-      "limn");
+  CLI::App app("limn draws coarse triangle meshes with smooth silhouettes, on the CPU.", "limn");
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_version_flag("--version", versionText);
   app.require_subcommand(1);

@@ -148,6 +148,18 @@ void listFrames(const Selection& selection, const OutputPattern* pattern) {
   std::cout << std::flush;
 }
 
+/// All directories of the run's files, now: one that is lost later on is a fault.
+void makeDirectories(const OutputPattern& pattern, const Selection& selection) {
+  std::string last;
+  for (int i = 0; i < selection.count(); ++i) {
+    const std::string path = pattern.path(selection.frame(i));
+    const std::string directory = path.substr(0, path.rfind('/') + 1);
+    if (i > 0 && directory == last) continue;
+    scene::makeDirectoriesOf(path);
+    last = directory;
+  }
+}
+
 /// Draws frame after frame while earlier ones are finished.
 void drawFrames(const scene::Scene& scene, const Job& job, const Selection& selection,
                 const RenderOptions& options, FrameWriter& writer, Totals& totals) {
@@ -214,8 +226,7 @@ int render(const RenderOptions& options) {
     return kDone;
   }
   const bool writes = pattern && !options.dryRun;
-  if (writes && !pattern->isStandardOutput() && selection.count() > 0)
-    scene::makeDirectoriesOf(pattern->path(selection.frame(0)));
+  if (writes && !pattern->isStandardOutput()) makeDirectories(*pattern, selection);
   FrameWriter writer(*job, options, writes ? &*pattern : nullptr, selection.count());
   start = Clock::now();
   drawFrames(scene, *job, selection, options, writer, totals);

@@ -35,8 +35,8 @@ std::string versionText() {
        << GLM_VERSION_MAJOR << '.' << GLM_VERSION_MINOR << '.' << GLM_VERSION_PATCH << '.'
        << GLM_VERSION_REVISION << ",\nCLI11 " << CLI11_VERSION << ", nlohmann-json "
        << NLOHMANN_JSON_VERSION_MAJOR << '.' << NLOHMANN_JSON_VERSION_MINOR << '.'
-       << NLOHMANN_JSON_VERSION_PATCH << ", libpng " << dotted(png_access_version_number()) << ", libdeflate "
-       << LIBDEFLATE_VERSION_STRING << ", xxHash " << dotted(XXH_VERSION_NUMBER)
+       << NLOHMANN_JSON_VERSION_PATCH << ",\nlibpng " << dotted(png_access_version_number())
+       << ", libdeflate " << LIBDEFLATE_VERSION_STRING << ", xxHash " << dotted(XXH_VERSION_NUMBER)
        << ", tinygltf, stb_image_write";
   return text.str();
 }

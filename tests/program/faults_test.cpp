@@ -1,0 +1,154 @@
+// What goes wrong ends with the right status and message, and never with a broken file.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include "apps/scene/image.h"
+#include "tests/program/run_program.h"
+
+namespace {
+
+using limn::test::ProgramTest;
+using limn::test::operator+;
+using limn::test::Result;
+using limn::test::Running;
+using Words = std::vector<std::string>;
+
+class Faults : public ProgramTest {
+ protected:
+  void expect(const Words& arguments, int status, const std::string& message) const {
+    const Result result = limn(arguments);
+    EXPECT_EQ(result.status, status) << result.err;
+    EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
+    EXPECT_TRUE(result.err.starts_with("limn: error: ")) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  }
+
+  bool isWhole(const std::string& name) const {
+    limn::scene::PngSummary summary;
+    return limn::scene::inspectPng(path(name), summary);
+  }
+
+  /// Waits until the folder holds so many files; false after ten seconds.
+  bool waitForFiles(const std::string& folder, std::size_t count) const {
+    for (int i = 0; i < 1000 && names(folder).size() < count; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return names(folder).size() >= count;
+  }
+
+  const Words longJob_ = {"render",      "builtin:pawn", "--size", "160x120",
+                          "--turntable", "2000",         "-o",     "f/%04d.png"};
+};
+
+TEST_F(Faults, OfUsage) {
+  const std::string frame = "a.png";
+  expect({}, 2, "name a command");
+  expect({"rendr"}, 2, "did you mean render?");
+  expect({"render"}, 2, "name one with -o");
+  expect({"render", "-o", frame, "--tolerence", "1"}, 2, "did you mean --tolerance?");
+  expect({"render", "-o", frame, "--method", "patchs"}, 2, "did you mean patches?");
+  expect({"render", "-o", frame, "--size", "0x10"}, 2, "1 to 16384");
+  expect({"render", "-o", frame, "--size", "99999x99999"}, 2, "1 to 16384");
+  expect({"render", "-o", frame, "--size", "tall"}, 2, "WIDTHxHEIGHT");
+  expect({"render", "-o", frame, "--eye", "1,2,3", "--target", "1,2,3"}, 2, "same point");
+  expect({"render", "-o", frame, "--eye", "0,9,0", "--target", "0,0,0"}, 2, "line of sight");
+  expect({"render", "-o", frame, "--fov", "180"}, 2, "below 180");
+  expect({"render", "-o", frame, "--zoom", "0"}, 2, "above 0");
+  expect({"render", "-o", frame, "--ortho", "-2"}, 2, "above 0");
+  expect({"render", "-o", frame, "--azimuth", "nan"}, 2, "not a finite number");
+  expect({"render", "-o", frame, "--turntable", "5"}, 2, "frames/%04d.png");
+  expect({"render", "-o", "%d/%d.png"}, 2, "two numbers");
+  expect({"render", "-o", frame, "--frames", "2"}, 2, "has one frame");
+  expect({"render", "-o", "a.jpg"}, 2, "limn writes PNG");
+  expect({"render", "-o", "-", "--hash"}, 2, "standard output");
+  expect({"render", "-o", frame, "--camera", "0"}, 2, "no camera");
+  expect({"render", "-o", frame, "--animation", "Run"}, 2, "no animation");
+  expect({"render", "-o", frame, "--fps", "10"}, 2, "--animation");
+  expect({"render", "-o", frame, "--threads", "0"}, 2, "1 to 1024");
+  EXPECT_TRUE(names("").empty());
+}
+
+TEST_F(Faults, OfInput) {
+  expect({"render", "builtin:spher-200", "-o", "a.png"}, 3, "did you mean builtin:sphere-200?");
+  expect({"render", "nothing.glb", "-o", "a.png"}, 3, "nothing.glb");
+  expect({"info", "nothing.glb"}, 3, "nothing.glb");
+  expect({"compare", "no.png", "no.png"}, 3, "no.png");
+  EXPECT_TRUE(names("").empty());
+}
+
+TEST_F(Faults, OfOutput) {
+  const Words frame = {"render", "builtin:cone-70", "--size", "20x20"};
+  expect(frame + Words{"-o", "/dev/full"}, 4, "/dev/full: could not be written: No space left");
+  expect(frame + Words{"-o", "/proc/nowhere/a.png"}, 4, "/proc/nowhere");
+  expect(frame + Words{"-o", "a.png", "--stats", "/dev/full"}, 4, "/dev/full");
+  write("file", "");
+  expect(frame + Words{"-o", "file/a.png"}, 4, "file");
+  std::filesystem::create_directories(path("folder"));
+  expect(frame + Words{"-o", "folder"}, 4, "is a directory");
+  write("kept.png", "old");
+  std::filesystem::permissions(path("kept.png"), std::filesystem::perms::owner_read);
+  expect(frame + Words{"-o", "kept.png"}, 4, "read-only");
+  EXPECT_EQ(contents("kept.png"), "old");
+  if (::geteuid() != 0) {
+    std::filesystem::permissions(path("folder"),
+                                 std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+    expect(frame + Words{"-o", "folder/a.png"}, 4, "folder/a.png");
+  }
+}
+
+TEST_F(Faults, AFileThatBecomesTooLargeLeavesNothing) {
+  Running program(directory_,
+                  {"render", "builtin:pawn", "-o", "f/a.png", "--size", "640x480", "--compress", "0"}, "",
+                  100000);
+  const Result result = program.wait();
+  EXPECT_EQ(result.status, 4) << result.err;
+  EXPECT_NE(result.err.find("f/a.png"), std::string::npos) << result.err;
+  EXPECT_TRUE(names("f").empty());
+}
+
+TEST_F(Faults, SignalsEndTheRunAtOnceWithWholeFilesOnly) {
+  for (const int number : {SIGTERM, SIGINT, SIGHUP}) {
+    std::filesystem::remove_all(path("f"));
+    Running program(directory_, longJob_, "");
+    ASSERT_TRUE(waitForFiles("f", 3));
+    program.signal(number);
+    const Result result = program.wait();
+    EXPECT_EQ(result.status, 128 + number);
+    const Words files = names("f");
+    EXPECT_LT(files.size(), 2000U);
+    for (const std::string& name : files) EXPECT_TRUE(isWhole("f/" + name)) << name;
+  }
+}
+
+TEST_F(Faults, AKilledRunIsResumedToTheSameBytes) {
+  const Words job = {"render", "builtin:pawn", "--size", "160x120", "--turntable", "40", "-o"};
+  ASSERT_EQ(limn(job + Words{"whole/%04d.png"}).status, 0);
+  for (const std::size_t after : {1U, 5U, 17U}) {
+    Running program(directory_, job + Words{"killed/%04d.png", "--skip-existing"}, "");
+    ASSERT_TRUE(waitForFiles("killed", after));
+    program.signal(SIGKILL);
+    program.wait();
+    for (const std::string& name : names("killed")) EXPECT_TRUE(isWhole("killed/" + name)) << name;
+  }
+  ASSERT_EQ(limn(job + Words{"killed/%04d.png", "--skip-existing"}).status, 0);
+  ASSERT_EQ(names("killed"), names("whole"));
+  for (const std::string& name : names("whole"))
+    EXPECT_EQ(contents("killed/" + name), contents("whole/" + name)) << name;
+}
+
+TEST_F(Faults, ALostDirectoryIsReported) {
+  Running program(directory_, longJob_, "");
+  ASSERT_TRUE(waitForFiles("f", 2));
+  std::filesystem::rename(path("f"), path("elsewhere"));
+  const Result result = program.wait();
+  EXPECT_EQ(result.status, 4) << result.err;
+  EXPECT_NE(result.err.find("is its directory still there?"), std::string::npos) << result.err;
+  for (const std::string& name : names("elsewhere")) EXPECT_TRUE(isWhole("elsewhere/" + name)) << name;
+}
+
+}  // namespace
