@@ -1,5 +1,7 @@
 // Interpolation planes of texture coordinates, colours and tangents: only for triangles that are seen.
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "raster/tile.h"
 
@@ -13,7 +15,7 @@ struct VertexAttributes {
 };
 
 // Of a vertex of the draw: the geometry's, or the stream's beyond them.
-VertexAttributes attributesOfVertex(const Draw& draw, std::uint32_t vertex) {
+VertexAttributes rawAttributes(const Draw& draw, std::uint32_t vertex) {
   const Geometry::Data& g = draw.geometry->data();
   VertexAttributes a;
   if (vertex < g.positions.size()) {
@@ -29,6 +31,35 @@ VertexAttributes attributesOfVertex(const Draw& draw, std::uint32_t vertex) {
   if (!v.colors.empty()) a.color = v.colors[i];
   if (!v.tangents.empty()) a.tangent = v.tangents[i];
   return a;
+}
+
+VertexAttributes attributesOfVertex(const Draw& draw, std::uint32_t vertex, const Material& m) {
+  VertexAttributes a = rawAttributes(draw, vertex);
+  const glm::vec2 t = a.texcoord;
+  const glm::vec3 &r = m.texcoordRow0, &s = m.texcoordRow1;
+  a.texcoord = {(r.x * t.x + r.y * t.y) + r.z, (s.x * t.x + s.y * t.y) + s.z};
+  return a;
+}
+
+// For a triangle without tangents: the direction in which u grows on it, and the handedness that lets the bitangent
+// run against v, as glTF's normal maps expect (their green axis points up, v points down).
+void makeTangents(const Batch& batch, const Cluster& cluster, const TriangleRef& ref,
+                  std::array<VertexAttributes, 3>& vertex) {
+  std::array<glm::vec3, 3> p;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t i = cluster.firstVertex + batch.set->corners[k][cluster.firstTriangle + ref.triangle];
+    p[k] = {batch.points->x[i], batch.points->y[i], batch.points->z[i]};
+  }
+  const float u1 = vertex[1].texcoord.x - vertex[0].texcoord.x,
+              v1 = vertex[1].texcoord.y - vertex[0].texcoord.y;
+  const float u2 = vertex[2].texcoord.x - vertex[0].texcoord.x,
+              v2 = vertex[2].texcoord.y - vertex[0].texcoord.y;
+  const float area = u1 * v2 - u2 * v1, sign = area < 0.0F ? -1.0F : 1.0F;
+  glm::vec3 t;
+  for (int i = 0; i < 3; ++i) t[i] = ((p[1][i] - p[0][i]) * v2 - (p[2][i] - p[0][i]) * v1) * sign;
+  const float square = (t.x * t.x + t.y * t.y) + t.z * t.z;
+  const float scale = 1.0F / std::sqrt(std::max(square, 1e-37F));
+  for (VertexAttributes& a : vertex) a.tangent = {t.x * scale, t.y * scale, t.z * scale, -sign};
 }
 
 using Values = std::array<float, Attributes::kCount>;
@@ -54,17 +85,19 @@ const Attributes& attributesOf(Tile& tile, Record& record) {
   const LooseTriangle* loose = isLoose ? &context.front.loose(record.source & ~Record::kLoose) : nullptr;
   const VertexBlock* block = isLoose ? nullptr : &tile.blocks[record.source / kClusterTriangles];
 
+  const Material& material = context.frame.materials[cluster.material];
+  std::array<VertexAttributes, 3> vertex;
   std::array<Values, 3> corner;
   std::array<float, 3> q;
-  float handedness = 0.0F;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint8_t local = set.corners[k][cluster.firstTriangle + ref.triangle];
-    const VertexAttributes a = attributesOfVertex(*batch.draw, set.vertices[cluster.firstVertex + local]);
-    corner[k] = valuesOf(a, batch.toView);
-    if (k == 0) handedness = a.tangent.w;
+    vertex[k] = attributesOfVertex(*batch.draw, set.vertices[cluster.firstVertex + local], material);
     const float depth = isLoose ? loose->plane[k][3] : block->plane[local][3];
     q[k] = context.map.perspective ? depth : 1.0F;
   }
+  if (material.normalTexture != nullptr && vertex[0].tangent.w == 0.0F)
+    makeTangents(batch, cluster, ref, vertex);
+  for (std::size_t k = 0; k < 3; ++k) corner[k] = valuesOf(vertex[k], batch.toView);
   if (isLoose) {
     const std::array<Values, 3> whole = corner;
     for (std::size_t k = 0; k < 3; ++k)
@@ -76,7 +109,8 @@ const Attributes& attributesOf(Tile& tile, Record& record) {
   std::array<int, 3> order;
   const PlaneBasis basis(tile.cornersOf(record, order));
   Attributes result;
-  result.handedness = batch.mirrored ? -handedness : handedness;
+  result.handedness = batch.mirrored ? -vertex[0].tangent.w : vertex[0].tangent.w;
+  result.isBackFace = (order[1] == 1) != batch.mirrored;
   const auto a = static_cast<std::size_t>(order[0]), b = static_cast<std::size_t>(order[1]),
              c = static_cast<std::size_t>(order[2]);
   for (std::size_t i = 0; i < Attributes::kCount; ++i) {

@@ -116,9 +116,9 @@ void FrontEnd::cull(const Frame& frame, std::span<const Batch> batches, const Sc
     if (cones && bounds.coneSine < 1.0F && facesAway(bounds, *batch, map.perspective)) continue;
     const Fate fate = classify(bounds, *batch, map);
     if (fate == Fate::kHidden) continue;
-    if (fate == Fate::kClip) {
-      for (std::uint32_t t = 0; t < cluster.triangleCount; ++t)
-        if (!batch->isReplaced(cluster.firstTriangle + t)) clipTriangle(*batch, {b, c, t}, map, range.loose);
+    const bool blended = frame.materials[cluster.material].alphaMode == AlphaMode::kBlend;
+    if (fate == Fate::kClip || blended) {
+      drawLoosely(*batch, b, c, blended, map, range);
       continue;
     }
     const TileRect rect = tilesOf(boxOfCluster(*batch, cluster, map), tiling);
@@ -126,13 +126,29 @@ void FrontEnd::cull(const Frame& frame, std::span<const Batch> batches, const Sc
     visible_[range.begin + range.visible++] = {b, c, rect};
     clusterBins_.count(r, rect);
   }
-  for (const LooseTriangle& t : range.loose) looseBins_.count(r, tilesOf(boxOf(t), tiling));
+}
+
+void FrontEnd::drawLoosely(const Batch& batch, std::uint32_t b, std::uint32_t c, bool blended,
+                           const ScreenMap& map, Range& range) {
+  const Cluster& cluster = batch.set->clusters[c];
+  for (std::uint32_t t = 0; t < cluster.triangleCount; ++t) {
+    const std::uint32_t triangle = cluster.firstTriangle + t;
+    if (batch.isReplaced(triangle)) continue;
+    const std::size_t first = range.loose.size();
+    clipTriangle(batch, {b, c, t}, map, range.loose);
+    if (!blended) continue;
+    float z[3];
+    for (std::size_t k = 0; k < 3; ++k)
+      z[k] = viewPosition(batch, cluster.firstVertex + batch.set->corners[k][triangle]).z;
+    const float depth = -((z[0] + z[1]) + z[2]);
+    for (std::size_t i = first; i < range.loose.size(); ++i)
+      range.blended.push_back({depth, batch.order(triangle), static_cast<std::uint32_t>(i)});
+  }
 }
 
 void FrontEnd::run(const Frame& frame, std::span<const Batch> batches, std::size_t clusterCount,
                    const ScreenMap& map, const Tiling& tiling, Workers& workers) {
   clusterBins_.reset(tiling);
-  looseBins_.reset(tiling);
   if (visible_.size() < clusterCount) visible_.resize(clusterCount);
   workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
     Range& range = ranges_[r];
@@ -141,28 +157,73 @@ void FrontEnd::run(const Frame& frame, std::span<const Batch> batches, std::size
     range.visible = 0;
     range.trianglesIn = 0;
     range.loose.clear();
+    range.blended.clear();
     if (range.begin < range.end) cull(frame, batches, map, tiling, r);
   });
   clusterBins_.allocate();
-  looseBins_.allocate();
-  std::size_t looseCount = 0;
-  trianglesIn_ = 0;
-  for (Range& range : ranges_) {
-    range.firstLoose = looseCount;
-    looseCount += range.loose.size();
-    trianglesIn_ += range.trianglesIn;
-  }
-  if (loose_.size() < looseCount) loose_.resize(looseCount);
   workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
     const Range& range = ranges_[r];
     for (std::size_t i = range.begin; i < range.begin + range.visible; ++i)
       clusterBins_.place(r, visible_[i].tiles, static_cast<std::uint32_t>(i));
-    for (std::size_t i = 0; i < range.loose.size(); ++i) {
-      loose_[range.firstLoose + i] = range.loose[i];
-      looseBins_.place(r, tilesOf(boxOf(range.loose[i]), tiling),
-                       static_cast<std::uint32_t>(range.firstLoose + i));
-    }
   });
+  trianglesIn_ = 0;
+  for (const Range& range : ranges_) trianglesIn_ += range.trianglesIn;
+  placeLoose(tiling, workers);
+  sortBlended(tiling, workers);
+}
+
+void FrontEnd::placeLoose(const Tiling& tiling, Workers& workers) {
+  looseBins_.reset(tiling);
+  std::size_t count = 0;
+  for (Range& range : ranges_) {
+    range.firstLoose = count;
+    count += range.loose.size();
+  }
+  if (loose_.size() < count) loose_.resize(count);
+  // Blended triangles are listed by sortBlended() instead.
+  const auto forUnblended = [&](const Range& range, const auto& body) {
+    auto key = range.blended.begin();
+    for (std::size_t i = 0; i < range.loose.size(); ++i) {
+      if (key != range.blended.end() && key->loose == i)
+        ++key;
+      else
+        body(tilesOf(boxOf(range.loose[i]), tiling), static_cast<std::uint32_t>(range.firstLoose + i));
+    }
+  };
+  if (count > 0)
+    workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
+      const Range& range = ranges_[r];
+      std::copy(range.loose.begin(), range.loose.end(),
+                loose_.begin() + static_cast<std::ptrdiff_t>(range.firstLoose));
+      forUnblended(range, [&](const TileRect& rect, std::uint32_t) { looseBins_.count(r, rect); });
+    });
+  looseBins_.allocate();
+  if (count > 0)
+    workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
+      forUnblended(ranges_[r], [&](const TileRect& rect, std::uint32_t i) { looseBins_.place(r, rect, i); });
+    });
+}
+
+void FrontEnd::sortBlended(const Tiling& tiling, Workers& workers) {
+  blended_.clear();
+  for (const Range& range : ranges_)
+    for (const BlendKey& key : range.blended)
+      blended_.push_back({key.depth, key.order, static_cast<std::uint32_t>(range.firstLoose + key.loose)});
+  std::sort(blended_.begin(), blended_.end());
+  blendedBins_.reset(tiling);
+  const auto forRange = [&](std::size_t r, const auto& body) {
+    for (std::size_t i = blended_.size() * r / kRanges; i < blended_.size() * (r + 1) / kRanges; ++i)
+      body(tilesOf(boxOf(loose_[blended_[i].loose]), tiling), blended_[i].loose);
+  };
+  if (!blended_.empty())
+    workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
+      forRange(r, [&](const TileRect& rect, std::uint32_t) { blendedBins_.count(r, rect); });
+    });
+  blendedBins_.allocate();
+  if (!blended_.empty())
+    workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
+      forRange(r, [&](const TileRect& rect, std::uint32_t i) { blendedBins_.place(r, rect, i); });
+    });
 }
 
 std::size_t FrontEnd::memoryBytes() const {

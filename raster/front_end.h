@@ -65,22 +65,38 @@ class FrontEnd {
   const LooseTriangle& loose(std::uint32_t item) const { return loose_[item]; }
   const Bins& clusterBins() const { return clusterBins_; }
   const Bins& looseBins() const { return looseBins_; }
+  const Bins& blendedBins() const { return blendedBins_; }  ///< loose triangles, far to near
   std::uint64_t trianglesIn() const { return trianglesIn_; }
   std::size_t memoryBytes() const;
 
  private:
+  struct BlendKey {
+    float depth;  ///< view depth of the triangle's centre
+    std::uint64_t order;
+    std::uint32_t loose;
+    bool operator<(const BlendKey& other) const {
+      if (depth != other.depth) return depth > other.depth;
+      return order != other.order ? order < other.order : loose < other.loose;
+    }
+  };
   struct Range {
     std::size_t begin = 0, end = 0, visible = 0, firstLoose = 0;
     std::vector<LooseTriangle> loose;
+    std::vector<BlendKey> blended;  ///< which of `loose` are blended
     std::uint64_t trianglesIn = 0;
   };
   void cull(const Frame& frame, std::span<const Batch> batches, const ScreenMap& map, const Tiling& tiling,
             std::size_t r);
+  void drawLoosely(const Batch& batch, std::uint32_t b, std::uint32_t c, bool blended, const ScreenMap& map,
+                   Range& range);
+  void placeLoose(const Tiling& tiling, Workers& workers);
+  void sortBlended(const Tiling& tiling, Workers& workers);
 
   std::array<Range, kRanges> ranges_;
   std::vector<VisibleCluster> visible_;  // of range r at [ranges_[r].begin, + visible)
   std::vector<LooseTriangle> loose_;
-  Bins clusterBins_, looseBins_;
+  std::vector<BlendKey> blended_;
+  Bins clusterBins_, looseBins_, blendedBins_;
   std::uint64_t trianglesIn_ = 0;
 };
 

@@ -127,6 +127,7 @@ void Renderer::draw(const Frame& frame, const Target& target, Statistics* statis
     tile.begin(context, index);
     resolveVisibility(tile);
     const double visibilityMs = msSince(begin);
+    blendTriangles(tile);
     shadeTile(tile);
     tile.statistics.visibilityMs += visibilityMs;
     tile.statistics.shadingMs += msSince(begin) - visibilityMs;

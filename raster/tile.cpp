@@ -15,12 +15,17 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
   stride = tiling.tileWidth;
   clusters = c.front.clusterBins().of(index);
   loose = c.front.looseBins().of(index);
+  blended = c.front.blendedBins().of(index);
   const std::size_t samples =
       c.samples.size() * static_cast<std::size_t>(stride) * static_cast<std::size_t>(tiling.tileHeight);
   depth.assign(samples, c.map.farDepth);
   ids.assign(samples, kNoRecord);
   records.clear();
   attributes.clear();
+  if (!blended.empty()) {
+    colors.resize(samples);
+    isBlended.assign(samples / c.samples.size(), 0);
+  }
   if (blocks.size() < clusters.size()) blocks.resize(clusters.size());
 }
 
@@ -63,7 +68,8 @@ std::uint64_t Tile::orderOf(const Record& record) const {
 std::size_t Tile::memoryBytes() const {
   return depth.capacity() * sizeof(float) + ids.capacity() * sizeof(std::uint32_t) +
          records.capacity() * sizeof(Record) + blocks.capacity() * sizeof(VertexBlock) +
-         attributes.capacity() * sizeof(Attributes);
+         attributes.capacity() * sizeof(Attributes) + colors.capacity() * sizeof(glm::vec4) +
+         isBlended.capacity();
 }
 
 }  // namespace limn::raster

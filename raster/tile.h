@@ -45,7 +45,8 @@ struct alignas(64) Record {
 struct Attributes {
   enum { kU, kV, kRed, kGreen, kBlue, kAlpha, kTangentX, kTangentY, kTangentZ, kCount };
   float origin[kCount], slopeX[kCount], slopeY[kCount];
-  float handedness;  ///< of the tangent frame; 0: the triangle has none
+  float handedness;  ///< of the tangent frame
+  bool isBackFace;
 };
 
 /// One thread's memory for tiles, used again from tile to tile and frame to frame.
@@ -65,6 +66,10 @@ class Tile {
   /// Its corners on the sub-pixel grid, in drawing order; indices[i] says which corner of the triangle they
   /// are.
   Corners cornersOf(const Record& record, std::array<int, 3>& order) const;
+  Corners cornersOf(const Record& record) const {
+    std::array<int, 3> order;
+    return cornersOf(record, order);
+  }
   /// Submission order.
   std::uint64_t orderOf(const Record& record) const;
   std::size_t memoryBytes() const;
@@ -78,7 +83,10 @@ class Tile {
   std::vector<Record> records;
   std::vector<Attributes> attributes;
   std::vector<VertexBlock> blocks;  // of the tile's clusters
-  std::span<const std::uint32_t> clusters, loose;
+  std::span<const std::uint32_t> clusters, loose, blended;
+  std::vector<glm::vec4>
+      colors;  // colour · alpha, alpha, by offset(): of pixels that something is blended over
+  std::vector<std::uint8_t> isBlended;  // per pixel of the tile: its colours are in `colors`
   Statistics statistics;
 };
 
@@ -87,7 +95,9 @@ const Attributes& attributesOf(Tile& tile, Record& record);
 
 /// Depth and triangle of every sample of the tile.
 void resolveVisibility(Tile& tile);
-/// Colours, and the other planes, from them.
+/// Blended triangles over what is visible, far to near.
+void blendTriangles(Tile& tile);
+/// Colours, and the other planes.
 void shadeTile(Tile& tile);
 
 }  // namespace limn::raster

@@ -1,0 +1,77 @@
+// Blended triangles: source over, per sample, in linear light.
+//
+// Based on: T. Porter, T. Duff, "Compositing digital images", 1984.
+// Differs in: nothing; pixels that nothing is blended over never get colours per sample.
+#include "raster/setup.h"
+#include "raster/surface.h"
+#include "raster/tile.h"
+
+namespace limn::raster {
+namespace {
+
+unsigned samplesOf(const Tile& tile, std::uint32_t id, int x, int y) {
+  unsigned mask = 0;
+  for (unsigned s = 0; s < tile.context->samples.size(); ++s)
+    mask |= static_cast<unsigned>(tile.ids[tile.offset(static_cast<int>(s), x, y)] == id) << s;
+  return mask;
+}
+
+// Gives a pixel its colours per sample: what is visible in it so far.
+void open(Tile& tile, int x, int y) {
+  std::uint8_t& isBlended = tile.isBlended[tile.offset(0, x, y)];
+  if (isBlended != 0) return;
+  isBlended = 1;
+  const glm::vec4 b = tile.context->frame.background;
+  const auto samples = static_cast<int>(tile.context->samples.size());
+  unsigned left = (1U << samples) - 1U;
+  for (int s = 0; s < samples; ++s) {
+    if (((left >> s) & 1U) == 0) continue;
+    const std::uint32_t id = tile.ids[tile.offset(s, x, y)];
+    const unsigned mask = samplesOf(tile, id, x, y);
+    left &= ~mask;
+    glm::vec4 color{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
+    if (id != kNoRecord) {
+      Record& record = tile.records[id];
+      color = shadeAt(tile, record, shadingPoint(tile, tile.cornersOf(record), mask, x, y));
+    }
+    for (int k = s; k < samples; ++k)
+      if (((mask >> k) & 1U) != 0) tile.colors[tile.offset(k, x, y)] = color;
+  }
+}
+
+void over(glm::vec4& under, const glm::vec4& color) {
+  const float rest = 1.0F - color.w;
+  under = {color.x * color.w + under.x * rest, color.y * color.w + under.y * rest,
+           color.z * color.w + under.z * rest, color.w + under.w * rest};
+}
+
+void blendPixel(Tile& tile, TriangleSetup& t, int x, int y) {
+  const unsigned coverage = t.coverage(tile, x, y);
+  unsigned seen = 0;
+  for (unsigned s = 0; coverage >> s != 0; ++s) {
+    const bool covered = ((coverage >> s) & 1U) != 0;
+    seen |= static_cast<unsigned>(covered && t.depthAt(tile, s, x, y) >=
+                                                 tile.depth[tile.offset(static_cast<int>(s), x, y)])
+            << s;
+  }
+  if (seen == 0) return;
+  const glm::vec4 color = shadeAt(tile, t.record, shadingPoint(tile, t.corners, coverage, x, y));
+  if (color.w <= 0.0F) return;
+  open(tile, x, y);
+  for (unsigned s = 0; seen >> s != 0; ++s)
+    if (((seen >> s) & 1U) != 0) over(tile.colors[tile.offset(static_cast<int>(s), x, y)], color);
+}
+
+}  // namespace
+
+void blendTriangles(Tile& tile) {
+  TriangleSetup t;
+  for (const std::uint32_t item : tile.blended) {
+    if (!setLoose(tile, item, t)) continue;
+    ++tile.statistics.trianglesDrawn;
+    for (int y = t.y0; y < t.y1; ++y)
+      for (int x = t.x0; x < t.x1; ++x) blendPixel(tile, t, x, y);
+  }
+}
+
+}  // namespace limn::raster

@@ -1,0 +1,27 @@
+// The material of a triangle at a point of it: what shading, alpha masks and blending share.
+#pragma once
+
+#include <glm/vec4.hpp>
+
+#include "raster/tile.h"
+
+namespace limn::raster {
+
+/// The batch and the material that a record is drawn with.
+struct Surface {
+  const Batch* batch;
+  const Material* material;
+};
+Surface surfaceOf(const Tile& tile, const Record& record);
+
+/// Linear base colour and alpha: factor, vertex colour and texture. `at` is in window sub-pixels.
+glm::vec4 baseColorAt(Tile& tile, Record& record, const Surface& surface, SamplePosition at);
+
+/// The colour that reaches the eye, and the material's alpha there (1 unless it is blended).
+glm::vec4 shadeAt(Tile& tile, Record& record, SamplePosition at);
+
+/// Where a pixel (from the tile's corner) of a triangle is shaded: at its centre if that is covered, else at the first
+/// sample of the mask.
+SamplePosition shadingPoint(const Tile& tile, const Corners& corners, unsigned mask, int x, int y);
+
+}  // namespace limn::raster
