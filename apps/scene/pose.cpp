@@ -24,18 +24,16 @@ glm::dmat4 localMatrix(const Node& node) {
           glm::dvec4(node.translation, 1)};
 }
 
-glm::dmat4 translated(const glm::dmat4& matrix, const glm::dvec3& by) {
-  glm::dmat4 result = matrix;
-  result[3] = matrix * glm::dvec4(by, 1.0);
-  return result;
+/// `matrix` · translation by the mesh's origin · its scale.
+glm::dmat4 placeStored(const glm::dmat4& matrix, const Mesh& mesh) {
+  return {matrix[0] * mesh.scale, matrix[1] * mesh.scale, matrix[2] * mesh.scale,
+          matrix * glm::dvec4(mesh.origin, 1.0)};
 }
 
-std::size_t countInstances(const Scene& scene) {
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-    if (scene.inScene[i] && scene.nodes[i].mesh >= 0) ++count;
-  }
-  return count;
+/// Whether node `i` draws something: it is in the scene and its mesh has triangles.
+bool isDrawn(const Scene& scene, std::size_t i) {
+  const std::int32_t mesh = scene.nodes[i].mesh;
+  return scene.inScene[i] && mesh >= 0 && !scene.meshes[static_cast<std::size_t>(mesh)].indices.empty();
 }
 
 struct Bounds {
@@ -55,6 +53,14 @@ void forEachPosition(const Scene& scene, const Pose& pose, const Visit& visit) {
 
 }  // namespace
 
+glm::dquat unitQuaternion(const glm::dquat& q) {
+  const double largest = std::max({std::abs(q.w), std::abs(q.x), std::abs(q.y), std::abs(q.z)});
+  if (!(largest > 0.0)) return {1.0, 0.0, 0.0, 0.0};
+  const glm::dquat s(q.w / largest, q.x / largest, q.y / largest, q.z / largest);  // squares cannot overflow
+  const double length = std::sqrt(s.w * s.w + s.x * s.x + s.y * s.y + s.z * s.z);
+  return {s.w / length, s.x / length, s.y / length, s.z / length};
+}
+
 void evaluatePose(const Scene& scene, int animation, double seconds, Pose& pose) {
   require(animation >= -1 && animation < static_cast<int>(scene.animations.size()), "no such animation");
   require(std::isfinite(seconds), "the time is not finite");
@@ -65,15 +71,16 @@ void evaluatePose(const Scene& scene, int animation, double seconds, Pose& pose)
     pose.nodeToWorld[i] =
         node.parent < 0 ? local : pose.nodeToWorld[static_cast<std::size_t>(node.parent)] * local;
   }
-  pose.instances.resize(countInstances(scene));
-  std::size_t k = 0;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-    if (!scene.inScene[i] || scene.nodes[i].mesh < 0) continue;
-    Instance& instance = pose.instances[k++];
+    if (!isDrawn(scene, i)) continue;
+    if (pose.instances.size() == count) pose.instances.emplace_back();
+    Instance& instance = pose.instances[count++];
     instance.mesh = static_cast<std::uint32_t>(scene.nodes[i].mesh);
     instance.node = static_cast<std::uint32_t>(i);
-    instance.toWorld = translated(pose.nodeToWorld[i], scene.meshes[instance.mesh].origin);
+    instance.toWorld = placeStored(pose.nodeToWorld[i], scene.meshes[instance.mesh]);
   }
+  pose.instances.resize(count);
 }
 
 Sphere boundingSphere(const Scene& scene, const Pose& pose) {

@@ -10,8 +10,8 @@
 
 namespace limn::scene {
 
-/// One mesh placed in the world. Where the mesh deforms (skin or morph targets) the posed arrays are filled: positions
-/// relative to `meshOrigin`, and toWorld places those.
+/// One mesh placed in the world. Where the mesh deforms (skin or morph targets) the posed arrays are filled:
+/// positions relative to `meshOrigin`, and toWorld places those.
 struct Instance {
   std::uint32_t mesh = 0;
   std::uint32_t node = 0;
@@ -30,6 +30,9 @@ struct Sphere {
   glm::dvec3 center{0.0};
   double radius = 0.0;
 };
+
+/// `q` scaled to length 1; the identity for a quaternion of length 0.
+glm::dquat unitQuaternion(const glm::dquat& q);
 
 /// Evaluates `animation` (-1: none, the rest pose) at `seconds`. Reuses the arrays of `pose`.
 void evaluatePose(const Scene& scene, int animation, double seconds, Pose& pose);

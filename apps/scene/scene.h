@@ -34,7 +34,10 @@ struct SkinBinding {
 /// All primitives of one glTF mesh: triangles only, one vertex array, parts by material.
 struct Mesh {
   std::string name;
-  glm::dvec3 origin{0.0};  ///< what was subtracted from the file's positions: the centre of their bounds
+  /// The file's positions are origin + scale · positions. 0 and 1, unless the mesh lies far from its own origin for its
+  /// size (then the centre of its bounds, so that floats keep their digits) or is huge or tiny (then a power of two).
+  glm::dvec3 origin{0.0};
+  double scale = 1.0;
   std::vector<glm::vec3> positions, normals;
   std::vector<glm::vec2> texcoords;
   std::vector<glm::vec4> colors, tangents;

@@ -1,0 +1,143 @@
+#include "apps/scene/gltf_document.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "apps/scene/gltf_container.h"
+#include "apps/scene/gltf_uri.h"
+#include "apps/scene/load.h"
+
+namespace limn::scene {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+using Folder = std::optional<fs::path>;
+using Binary = std::optional<std::span<const std::uint8_t>>;
+
+std::string textOf(const json& object, const char* name) {
+  const auto member = object.find(name);
+  return member == object.end() ? std::string() : member->get<std::string>();
+}
+
+std::vector<std::uint8_t> decodedOrRefused(const GltfDocument& document, const std::string& uri,
+                                           const std::string& place) {
+  std::optional<std::vector<std::uint8_t>> bytes = decodeDataUri(uri);
+  if (!bytes)
+    document.refuse(place, "is no base64 data URI; write \"data:application/octet-stream;base64,...\"");
+  return std::move(*bytes);
+}
+
+fs::path pathOrRefused(const GltfDocument& document, const std::string& uri, const Folder& folder,
+                       const std::string& place) {
+  if (!folder)
+    document.refuse(place, "names a file, but a model on standard input has none beside it; embed it");
+  std::string problem;
+  fs::path path = resolveUri(uri, *folder, problem);
+  if (!problem.empty()) document.refuse(place, inQuotes(uri) + " " + problem);
+  return path;
+}
+
+GltfBuffer readBuffer(const GltfDocument& document, std::size_t index, const json& described,
+                      const Folder& folder, const Binary& binary) {
+  GltfBuffer buffer;
+  buffer.length = described["byteLength"].get<std::size_t>();
+  const std::string place = jsonPointer("buffers", index, "uri");
+  const auto uri = described.find("uri");
+  if (uri == described.end()) {
+    if (index == 0) buffer.bytes = binary;
+  } else if (const std::string& text = uri->get_ref<const std::string&>(); isDataUri(text)) {
+    buffer.owned = decodedOrRefused(document, text, place);
+    buffer.bytes = buffer.owned;
+  } else {
+    std::optional<std::vector<std::uint8_t>> bytes =
+        readFileBytes(pathOrRefused(document, text, folder, place), buffer.length);
+    if (!bytes) document.refuse(place, inQuotes(text) + " cannot be read; may you read it?");
+    buffer.owned = std::move(*bytes);
+    buffer.bytes = buffer.owned;
+  }
+  if (!buffer.bytes) return buffer;
+  if (buffer.bytes->size() < buffer.length) {
+    document.refuse(jsonPointer("buffers", index, "byteLength"),
+                    "is " + std::to_string(buffer.length) + ", but there are only " +
+                        std::to_string(buffer.bytes->size()) + " bytes; is the file whole?");
+  }
+  buffer.bytes = buffer.bytes->first(buffer.length);
+  return buffer;
+}
+
+GltfImage readImage(const GltfDocument& document, std::size_t index, const json& described,
+                    const Folder& folder) {
+  GltfImage image;
+  const std::string uri = textOf(described, "uri"), place = jsonPointer("images", index, "uri");
+  if (const auto view = described.find("bufferView"); view != described.end())
+    image.bufferView = view->get<int>();
+  else if (isDataUri(uri))
+    image.embedded = decodedOrRefused(document, uri, place);
+  else if (described.contains("uri"))
+    image.path = pathOrRefused(document, uri, folder, place);
+  return image;
+}
+
+// Takes out what tinygltf is not to see, and puts what it refuses although glTF allows it into a form that it
+// takes: it refuses index accessors without a view (all zeros), so they get one beyond the file's. Returns
+// the file's number.
+std::size_t adaptForTinygltf(json& document) {
+  document.erase("buffers");
+  document.erase("images");
+  json& views = document["bufferViews"];
+  if (views.is_null()) views = json::array();
+  const std::size_t viewCount = views.size();
+  if (!document.contains("accessors")) return viewCount;
+  for (json& accessor : document["accessors"]) {
+    if (!accessor.contains("bufferView")) accessor["bufferView"] = viewCount;
+  }
+  views.push_back({{"buffer", 0}, {"byteLength", 0}});
+  return viewCount;
+}
+
+}  // namespace
+
+GltfDocument::GltfDocument(std::string file, std::vector<std::uint8_t> bytes, const Folder& folder)
+    : file_(std::move(file)), bytes_(std::move(bytes)) {
+  const Container container = splitContainer(file_, bytes_, notices);
+  parse(container.jsonOffset, container.json, folder, container.binary);
+}
+
+void GltfDocument::parse(std::size_t jsonOffset, std::string_view text, const Folder& folder, Binary binary) {
+  json document = parseGltfJson(file_, text, jsonOffset, notices);
+  std::size_t inputBytes = bytes_.size();
+  if (document.contains("buffers")) {
+    for (const json& buffer : document["buffers"]) {
+      buffers.push_back(readBuffer(*this, buffers.size(), buffer, folder, binary));
+      inputBytes += buffers.back().owned.size();
+    }
+  }
+  if (document.contains("images")) {
+    for (const json& image : document["images"])
+      images.push_back(readImage(*this, images.size(), image, folder));
+  }
+  budget_ = Budget(inputBytes);
+  viewCount = adaptForTinygltf(document);
+  const std::string checked = document.dump();
+  document = nullptr;
+  tinygltf::TinyGLTF parser;
+  std::string errors, warnings;
+  const bool parsed = parser.LoadASCIIFromString(&model, &errors, &warnings, checked.data(),
+                                                 static_cast<unsigned int>(checked.size()), "");
+  if (!parsed) refuse("/", errors + "; this is what tinygltf says of it");
+}
+
+void GltfDocument::refuse(const std::string& place, const std::string& what) const {
+  throw InputError(file_ + ": " + place + ": " + what);
+}
+
+void GltfDocument::charge(std::size_t bytes, const std::string& place) {
+  if (budget_.take(bytes)) return;
+  refuse(place, "needs " + std::to_string(bytes >> 20) + " MiB more where " +
+                    std::to_string(budget_.left() >> 20) +
+                    " MiB are left to a file of this size; is the count right?");
+}
+
+}  // namespace limn::scene

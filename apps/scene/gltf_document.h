@@ -1,0 +1,86 @@
+// A glTF file in memory: its checked JSON as tinygltf's structures, and the bytes of its buffers and images.
+//
+// tinygltf checks neither the paths nor the bounds of what a file refers to, so it never sees a buffer or an
+// image: limn reads those, checks the JSON before tinygltf gets it (gltf_json.h), and the accessors after it
+// (gltf_accessor.h).
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/scene/gltf_json.h"
+
+namespace limn::scene {
+
+/// Bytes that a file may make the loader take, so that a small hostile file stays small.
+class Budget {
+ public:
+  /// For a model whose file and external files hold `inputBytes`.
+  explicit Budget(std::size_t inputBytes) : left_(kBase + kPerByte * inputBytes) {}
+
+  /// False if that is more than is left.
+  bool take(std::size_t bytes) {
+    if (bytes > left_) return false;
+    left_ -= bytes;
+    return true;
+  }
+  std::size_t left() const { return left_; }
+
+ private:
+  // One picture of 4096 x 4096 pixels with its mip levels, whatever it compresses to; and 64 times the input:
+  // positions of three bytes become positions, normals and tangents of 40.
+  static constexpr std::size_t kBase = 96U << 20;
+  static constexpr std::size_t kPerByte = 64;
+  std::size_t left_;
+};
+
+struct GltfBuffer {
+  std::optional<std::span<const std::uint8_t>> bytes;  ///< absent where the file says not where they are
+  std::vector<std::uint8_t> owned;                     ///< of an external file or a data URI
+  std::size_t length = 0;                              ///< what the file says; `bytes` are that many
+};
+
+struct GltfImage {
+  std::filesystem::path path;          ///< of an external file, checked, not yet read
+  std::vector<std::uint8_t> embedded;  ///< of a data URI
+  int bufferView = -1;
+};
+
+class GltfDocument {
+ public:
+  /// Throws InputError.
+  GltfDocument(std::string file, std::vector<std::uint8_t> bytes,
+               const std::optional<std::filesystem::path>& folder);
+  GltfDocument(const GltfDocument&) = delete;
+  GltfDocument& operator=(const GltfDocument&) = delete;
+
+  [[noreturn]] void refuse(const std::string& place, const std::string& what) const;
+  /// Takes `bytes` from the budget or refuses the file.
+  void charge(std::size_t bytes, const std::string& place);
+  void notice(std::string sentence) { notices.push_back(std::move(sentence)); }
+
+  tinygltf::Model model;  ///< without buffers, images and whatever limn does not know
+  std::size_t viewCount =
+      0;  ///< the file's; accessors with a bufferView from here on have none and are all zeros
+  std::vector<GltfBuffer> buffers;
+  std::vector<GltfImage> images;
+  std::vector<std::string> notices;
+
+ private:
+  void parse(std::size_t jsonOffset, std::string_view text,
+             const std::optional<std::filesystem::path>& folder,
+             std::optional<std::span<const std::uint8_t>> binary);
+
+  std::string file_;
+  std::vector<std::uint8_t> bytes_;
+  Budget budget_{0};
+};
+
+}  // namespace limn::scene

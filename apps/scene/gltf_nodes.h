@@ -1,0 +1,23 @@
+// glTF nodes, scenes, cameras, lights, skins and animations.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "apps/scene/gltf_document.h"
+#include "apps/scene/scene.h"
+
+namespace limn::scene {
+
+/// Fills scene.nodes (parents first), scene.inScene, cameras and lights; scene.meshes are there already.
+/// Returns for each node of the file its place in scene.nodes. Throws InputError for cycles, nodes with two
+/// parents, and transforms that leave the range of numbers.
+std::vector<std::uint32_t> readNodes(GltfDocument& document, Scene& scene);
+
+/// Fills scene.skins and checks that the meshes' joints are there.
+void readSkins(GltfDocument& document, const std::vector<std::uint32_t>& nodeOf, Scene& scene);
+
+/// Fills scene.animations.
+void readAnimations(GltfDocument& document, const std::vector<std::uint32_t>& nodeOf, Scene& scene);
+
+}  // namespace limn::scene
