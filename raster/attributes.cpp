@@ -92,8 +92,8 @@ const Attributes& attributesOf(Tile& tile, Record& record) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint8_t local = set.corners[k][cluster.firstTriangle + ref.triangle];
     vertex[k] = attributesOfVertex(*batch.draw, set.vertices[cluster.firstVertex + local], material);
-    const float depth = isLoose ? loose->plane[k][3] : block->plane[local][3];
-    q[k] = context.map.perspective ? depth : 1.0F;
+    q[k] =
+        isLoose || !context.map.perspective ? 1.0F : block->plane[local][3];  // a loose one's weights hold it
   }
   if (material.normalTexture != nullptr && vertex[0].tangent.w == 0.0F)
     makeTangents(batch, cluster, ref, vertex);
@@ -107,10 +107,13 @@ const Attributes& attributesOf(Tile& tile, Record& record) {
   }
 
   std::array<int, 3> order;
-  const PlaneBasis basis(tile.cornersOf(record, order));
+  const Corners corners = tile.cornersOf(record, order);
   Attributes result;
   result.handedness = batch.mirrored ? -vertex[0].tangent.w : vertex[0].tangent.w;
   result.isBackFace = (order[1] == 1) != batch.mirrored;
+  const bool cut = isLoose && loose->cut;
+  if (cut) order = {0, 1, 2};
+  const PlaneBasis basis(cut ? loose->anchors : corners);
   const auto a = static_cast<std::size_t>(order[0]), b = static_cast<std::size_t>(order[1]),
              c = static_cast<std::size_t>(order[2]);
   for (std::size_t i = 0; i < Attributes::kCount; ++i) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "raster/transform.h"
+#include "raster/triangle.h"
 
 namespace limn::raster {
 
@@ -19,15 +20,17 @@ struct TriangleRef {
 
 struct LooseTriangle {
   std::int32_t x[3], y[3];
+  bool cut;              ///< planes are given at `anchors`, else at the corners
+  Corners anchors;       ///< of positive area, within the window
   float plane[3][4];     ///< as VertexBlock::plane
-  glm::vec3 weights[3];  ///< of the corners, in the triangle it comes from
+  glm::vec3 weights[3];  ///< of the corners of the triangle it comes from, times q
   TriangleRef ref;
 };
 
 /// Box of a triangle's corners.
 Box boxOf(const LooseTriangle& t);
 
-/// Appends the parts of a triangle that lie before the near plane and within the guard band.
+/// Appends the parts of a triangle that lie between the near and the far plane and within the guard band.
 void clipTriangle(const Batch& batch, const TriangleRef& ref, const ScreenMap& map,
                   std::vector<LooseTriangle>& out);
 

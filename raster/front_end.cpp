@@ -27,7 +27,7 @@ Fate classify(const ClusterBounds& bounds, const Batch& batch, const ScreenMap& 
   const float r = bounds.radius * batch.stretch + size * 1e-5F;
   const float nearest = -c.z - r, farthest = -c.z + r;
   if (!(farthest >= map.nearPlane) || nearest > map.farPlane) return Fate::kHidden;
-  if (!(nearest > map.nearPlane)) return Fate::kClip;
+  if (!(nearest > map.nearPlane) || farthest > map.farPlane) return Fate::kClip;
   // The sphere's box in view space, projected; the window's own edges are left to the exact box.
   const float wide = map.perspective ? 1.0F / nearest : 1.0F,
               narrow = map.perspective ? 1.0F / farthest : 1.0F;

@@ -9,9 +9,10 @@ namespace limn::raster {
 
 class TriangleSetup {
  public:
-  /// False: nothing of the triangle can be drawn in the tile. `planes` are of the corners in submitted order.
+  /// False: nothing of the triangle can be drawn in the tile. `planes` are of the corners in submitted order, or
+  /// of the points `anchors`.
   bool set(const Tile& tile, Corners c, const float* const planes[3], std::uint32_t source, bool mirrored,
-           bool doubleSided) {
+           bool doubleSided, const Corners* anchors = nullptr) {
     const std::int64_t area = signedArea(c);
     // With y pointing down a triangle that is counter-clockwise in view space has a negative area.
     const bool back = mirrored ? area < 0 : area > 0;
@@ -20,12 +21,12 @@ class TriangleSetup {
     if (area < 0) {
       std::swap(c.x[1], c.x[2]);
       std::swap(c.y[1], c.y[2]);
-      std::swap(ordered[1], ordered[2]);
+      if (anchors == nullptr) std::swap(ordered[1], ordered[2]);
     }
     corners = c;
     if (!setBounds(tile)) return false;
     for (int i = 0; i < 3; ++i) edges_[i] = Edge::of(c, i, (i + 1) % 3);
-    setRecord(ordered, source, back);
+    setRecord(anchors != nullptr ? *anchors : corners, ordered, source, back);
     return true;
   }
 
@@ -64,8 +65,8 @@ class TriangleSetup {
     return x0 < x1 && y0 < y1;
   }
 
-  void setRecord(const float* const plane[3], std::uint32_t source, bool back) {
-    const PlaneBasis basis(corners);
+  void setRecord(const Corners& anchors, const float* const plane[3], std::uint32_t source, bool back) {
+    const PlaneBasis basis(anchors);
     for (int i = 0; i < 4; ++i) {
       const float sign = back && i < 3 ? -1.0F : 1.0F;  // a back face shows its other side
       const Slopes s = basis.slopes(sign * plane[0][i], sign * plane[1][i], sign * plane[2][i]);
@@ -73,8 +74,8 @@ class TriangleSetup {
       record.slopeX[i] = s.x;
       record.slopeY[i] = s.y;
     }
-    record.x0 = corners.x[0];
-    record.y0 = corners.y[0];
+    record.x0 = anchors.x[0];
+    record.y0 = anchors.y[0];
     record.source = source;
     record.attributes = kNoRecord;
   }
@@ -92,7 +93,8 @@ inline bool setLoose(const Tile& tile, std::uint32_t item, TriangleSetup& setup)
   std::copy(t.y, t.y + 3, corners.y);
   const float* const planes[3] = {t.plane[0], t.plane[1], t.plane[2]};
   const Material& m = context.frame.materials[batch.set->clusters[t.ref.cluster].material];
-  return setup.set(tile, corners, planes, Record::kLoose | item, batch.mirrored, m.doubleSided);
+  return setup.set(tile, corners, planes, Record::kLoose | item, batch.mirrored, m.doubleSided,
+                   t.cut ? &t.anchors : nullptr);
 }
 
 }  // namespace limn::raster

@@ -21,7 +21,7 @@ class Shader {
     glm::vec4 sum(0.0F);
     unsigned left = (1U << samples_) - 1U;
     int nearest = -1;
-    float nearestDepth = context_.map.farDepth;
+    float nearestDepth = kNoDepth;
     int empty = 0;
     const bool blended = !tile_.blended.empty() && tile_.isBlended[tile_.offset(0, x, y)] != 0;
     for (int s = 0; s < samples_; ++s) {

@@ -18,7 +18,7 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
   blended = c.front.blendedBins().of(index);
   const std::size_t samples =
       c.samples.size() * static_cast<std::size_t>(stride) * static_cast<std::size_t>(tiling.tileHeight);
-  depth.assign(samples, c.map.farDepth);
+  depth.assign(samples, kNoDepth);
   ids.assign(samples, kNoRecord);
   records.clear();
   attributes.clear();

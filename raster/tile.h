@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,9 @@ struct FrameContext {
 };
 
 inline constexpr std::uint32_t kNoRecord = 0xffffffffU;
+/// Of an empty sample. What lies beyond the far plane is cut off, so whatever covers a sample is nearer than
+/// nothing, even where its depth is rounding noise.
+inline constexpr float kNoDepth = std::numeric_limits<float>::lowest();
 
 /// A triangle that won at least one sample: the planes of its normal · q and depth, and where it comes from.
 struct alignas(64) Record {

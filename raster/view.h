@@ -65,16 +65,17 @@ struct ScreenMap {
     return {static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), depth, q};
   }
 
-  /// Distance along -z of a depth value.
+  /// Distance along -z of a depth value, at most that of the far plane.
   float viewDepth(float depth) const {
-    return perspective ? 1.0F / depth : (depthOffset - depth) * (farPlane - nearPlane);
+    const float within = std::max(depth, farDepth);
+    return perspective ? 1.0F / within : (depthOffset - within) * (farPlane - nearPlane);
   }
 
   bool perspective;
   float scaleX, scaleY;           ///< sub-pixels per unit at w = 1; y points down
   float offsetX, offsetY;         ///< window centre plus the half of rounding to nearest by floor
   float depthScale, depthOffset;  ///< orthographic depth = z · scale + offset
-  float farDepth;                 ///< depth of the far plane: what nothing may lie behind
+  float farDepth;                 ///< depth of the far plane
   float nearPlane, farPlane;
   float rayX, rayY;  ///< view-space x at w = 1 per sub-pixel from the window's centre
   int width, height;
