@@ -65,6 +65,7 @@ class MethodState {
 
 std::unique_ptr<MethodState> makeFlat(const Source& source);
 std::unique_ptr<MethodState> makeBlendedPatches(const Source& source);
+std::unique_ptr<MethodState> makeSilhouetteCurves(const Source& source);
 std::unique_ptr<MethodState> makePnTriangles(const Source& source);
 
 }  // namespace limn::silhouette

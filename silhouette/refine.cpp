@@ -13,7 +13,7 @@ namespace {
 
 // The methods, in the order of `Method`. A method to be written is a null pointer and refused at the door.
 constexpr std::array<std::unique_ptr<MethodState> (*)(const Source&), 4> kMethods = {
-    makeFlat, makeBlendedPatches, nullptr, nullptr};
+    makeFlat, makeBlendedPatches, makeSilhouetteCurves, nullptr};
 
 // Meshes below are refined by one thread each when there are several, meshes above by all threads, one by
 // one.

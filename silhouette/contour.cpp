@@ -1,0 +1,32 @@
+#include "silhouette/contour.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "raster/base/check.h"
+
+namespace limn::silhouette {
+
+// In τ = u/(1-u) it is c τ² + b τ + a = 0 with a c <= 0. q = -(b + sgn(b) √(b² - 4ac))/2 adds numbers of one
+// sign; the roots are q/c and a/q, and the signs say which is the one that is not negative.
+double contourRoot(double a, double b, double c) {
+  LIMN_ASSERT((a > 0.0) != (c > 0.0), a, b, c);
+  const double root = std::sqrt(b * b - 4.0 * a * c);
+  const double q = -0.5 * (b < 0.0 ? b - root : b + root);
+  const bool first = (b < 0.0) == (c > 0.0);
+  const double numerator = std::abs(first ? q : a), denominator = std::abs(first ? c : q);
+  if (denominator == 0.0) return first ? 1.0 : 0.0;
+  return numerator / (numerator + denominator);
+}
+
+float contourParameter(const View& view, const std::array<glm::vec3, 2>& p,
+                       const std::array<glm::vec3, 2>& n) {
+  // With D = x - o; its ends' values are those that decided visibility, so the signs are as they must be.
+  const double a = -facing(view, p[0], n[0]), c = -facing(view, p[1], n[1]);
+  if (!view.projection.perspective) return static_cast<float>(a / (a - c));
+  const glm::dvec3 v1(towardsEye(view, p[0])), v2(towardsEye(view, p[1]));
+  const double b = -(glm::dot(v1, glm::dvec3(n[1])) + glm::dot(v2, glm::dvec3(n[0])));
+  return static_cast<float>(contourRoot(a, b, c));
+}
+
+}  // namespace limn::silhouette

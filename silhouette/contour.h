@@ -1,0 +1,63 @@
+// Where the contour of the smooth shape crosses an edge, and the curve that joins two such points.
+//
+// Based on: L. Wang, C. Tu, W. Wang, X. Meng, B. Chan, D. Yan, "Silhouette Smoothing for Real-Time Rendering
+// of Mesh Surfaces", (2)-(7). Differs in: bridges and segments are kept as what they add to the straight line
+// (edge_curves.h); the quadratic is solved without cancellation, and its root moves continuously through the
+// ends of the edge; a polyline's inner vertices lie outside the curve instead of on it, which leaves 3/8 of
+// the mean error for the same number of vertices.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <glm/vec3.hpp>
+
+#include "silhouette/edge_curves.h"
+#include "silhouette/mesh.h"
+#include "silhouette/pixel_bound.h"
+
+namespace limn::silhouette {
+
+/// From a point towards the eye, not unit: o - x, or -d.
+inline glm::vec3 towardsEye(const View& view, const glm::vec3& x) {
+  return view.projection.perspective ? view.eye - x : -view.direction;
+}
+
+/// g = ⟨n, v(p)⟩. A vertex is visible when g >= 0.
+inline float facing(const View& view, const glm::vec3& p, const glm::vec3& n) {
+  const glm::vec3 v = towardsEye(view, p);
+  return n.x * v.x + n.y * v.y + n.z * v.z;
+}
+
+/// The root u in [0, 1] of (1-u)² a + u(1-u) b + u² c, for a > 0 >= c or a <= 0 < c. Continuous up to both ends;
+/// relative error of u and of 1-u a few ulp.
+double contourRoot(double a, double b, double c);
+
+/// Where on the edge from p1 to p2, whose ends differ in visibility, the linear normal is perpendicular to the
+/// (linear) direction of view.
+float contourParameter(const View& view, const std::array<glm::vec3, 2>& p,
+                       const std::array<glm::vec3, 2>& n);
+
+/// Second derivative of curvePoint() by t.
+inline glm::vec3 curveSecondDerivative(const CurveOffsets& d, float t) {
+  return 6.0f * ((3.0f * t - 2.0f) * d[0] + (1.0f - 3.0f * t) * d[1]);
+}
+
+/// How far outside the curve the inner vertices of its polyline lie, in sagittas of a step: with 3/4 the mean
+/// distance is least (1/4 of a sagitta instead of 2/3) and the largest is 3/4 of that of vertices on the curve.
+inline constexpr float kOutside = 0.75f;
+
+/// Vertex k of the polyline of n steps, 0 < k < n. The sagitta of a step is S''/(8 n²).
+inline glm::vec3 polylineVertex(const glm::vec3& p, const glm::vec3& q, const CurveOffsets& d, int k, int n) {
+  const auto steps = static_cast<float>(n);
+  const float t = static_cast<float>(k) / steps;
+  return curvePoint(p, q, d, t) - (kOutside / (8.0f * steps * steps)) * curveSecondDerivative(d, t);
+}
+
+/// The least number of such steps within the tolerance, given the distance between curve and chord; as
+/// segmentsFor(), but a single step has no inner vertex to gain from.
+inline int polylineSteps(float chordError, float tolerance, bool& capped) {
+  if (chordError <= tolerance) return 1;
+  return std::max(2, segmentsFor(kOutside * chordError, tolerance, capped));
+}
+
+}  // namespace limn::silhouette

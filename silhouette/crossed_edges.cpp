@@ -1,0 +1,72 @@
+#include "silhouette/crossed_edges.h"
+
+#include <cmath>
+
+namespace limn::silhouette {
+namespace {
+
+float sampleParameter(std::uint32_t sample, std::uint32_t segments) {
+  return static_cast<float>(sample) / static_cast<float>(segments);
+}
+
+// The sample of the polyline, ends included, that is nearest to t.
+std::uint32_t nearestSample(float t, std::uint32_t segments) {
+  return static_cast<std::uint32_t>(std::floor(t * static_cast<float>(segments) + 0.5f));
+}
+
+// The parameter of the silhouette point, after it has become a vertex near it if there is one.
+float settled(float t, bool& own, const CrossedEdge& edge, const EdgeCurve& curve,
+              const std::array<bool, 2>& open, const PixelBound& bound, float snap) {
+  own = true;
+  const glm::vec3 place = curve.point(t);
+  for (std::size_t end = 0; end < 2; ++end) {
+    if (!open[end]) continue;
+    const auto there = static_cast<float>(end);
+    own = own && t != there && !(bound.distance(place, curve.ends[end]) <= snap);
+    if (!own) return there;
+  }
+  const std::uint32_t sample = nearestSample(t, edge.segments);
+  if (sample == 0 || sample == edge.segments) return t;
+  const float there = sampleParameter(sample, edge.segments);
+  own = t != there && !(bound.distance(place, curve.place({there, sample}, edge.segments)) <= snap);
+  return own ? t : there;
+}
+
+}  // namespace
+
+void settle(CrossedEdge& edge, const EdgeCurve& curve, const std::array<bool, 2>& open,
+            const PixelBound& bound, float snap) {
+  for (std::size_t face = 0; face < 2; ++face) {
+    if (!edge.crosses[face]) continue;
+    if (face == 1 && edge.crosses[0] && edge.parameter[1] == edge.parameter[0] && edge.own[0]) {
+      edge.own[1] = false;  // the same point
+      continue;
+    }
+    edge.parameter[face] = settled(edge.parameter[face], edge.own[face], edge, curve, open, bound, snap);
+  }
+  if (edge.own[0] && edge.own[1] && edge.parameter[0] == edge.parameter[1]) edge.own[1] = false;
+
+  EdgeVertexList list;
+  edge.count = static_cast<std::uint32_t>(listVertices(edge, list));
+  for (std::size_t face = 0; face < 2; ++face) {
+    if (!edge.crosses[face]) continue;
+    std::uint32_t rank = edge.parameter[face] <= 0.0f && open[0] ? 0 : edge.count + 1;
+    for (std::uint32_t k = 0; k < edge.count; ++k)
+      if (list[k].t == edge.parameter[face]) rank = k + 1;
+    edge.rank[face] = rank;
+  }
+}
+
+std::size_t listVertices(const CrossedEdge& edge, EdgeVertexList& list) {
+  std::size_t size = 0;
+  for (std::uint32_t k = 1; k < edge.segments; ++k) list[size++] = {sampleParameter(k, edge.segments), k};
+  for (std::size_t face = 0; face < 2; ++face) {
+    if (!edge.own[face]) continue;
+    std::size_t at = size++;
+    for (; at > 0 && list[at - 1].t > edge.parameter[face]; --at) list[at] = list[at - 1];
+    list[at] = {edge.parameter[face], 0};
+  }
+  return size;
+}
+
+}  // namespace limn::silhouette

@@ -1,0 +1,191 @@
+#include "silhouette/remesh.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "raster/base/check.h"
+#include "silhouette/contour.h"
+
+namespace limn::silhouette {
+namespace {
+
+using glm::dot;
+using glm::vec3;
+
+// Lines of the plane of weights: bit k is side k's, and this one the segment's.
+constexpr unsigned kSegmentLine = 8;
+
+// A convex polygon in the plane of weights. Vertices on a common line share a bit.
+class Polygon {
+ public:
+  void add(std::uint32_t vertex, unsigned lines, const Places& places) {
+    vertices_[size_] = {vertex, lines, places[vertex]};
+    ++size_;
+  }
+  void triangulate(Pieces& pieces);
+
+ private:
+  struct Vertex {
+    std::uint32_t index;
+    unsigned lines;
+    vec3 place;
+  };
+
+  unsigned linesWithout(std::size_t skipped) const {
+    unsigned lines = ~0u;
+    for (std::size_t k = 0; k < size_; ++k)
+      if (k != skipped) lines &= vertices_[k].lines;
+    return lines;
+  }
+  void fan(Pieces& pieces) const {
+    for (std::size_t k = 2; k < size_; ++k)
+      pieces.add(vertices_[0].index, vertices_[k - 1].index, vertices_[k].index);
+  }
+  std::size_t shortestEar() const;
+
+  std::array<Vertex, 3 + 3 * kMaxSideVertices + kMaxSegments> vertices_;
+  std::size_t size_ = 0;
+};
+
+// The vertex whose cutting off makes the shortest diagonal, among those that are no points of a straight line
+// and do not leave one behind.
+std::size_t Polygon::shortestEar() const {
+  std::size_t best = size_;
+  float least = std::numeric_limits<float>::infinity();
+  for (std::size_t k = 0; k < size_; ++k) {
+    const Vertex &before = vertices_[k == 0 ? size_ - 1 : k - 1],
+                 &after = vertices_[k + 1 == size_ ? 0 : k + 1];
+    if ((before.lines & vertices_[k].lines & after.lines) != 0) continue;
+    const vec3 diagonal = after.place - before.place;
+    const float length2 = dot(diagonal, diagonal);
+    if (!(length2 < least) || linesWithout(k) != 0) continue;
+    least = length2;
+    best = k;
+  }
+  return best;
+}
+
+void Polygon::triangulate(Pieces& pieces) {
+  // All on one line where a segment runs along a side: what lies between the two in space is a sliver.
+  if (linesWithout(size_) != 0) {
+    fan(pieces);
+    return;
+  }
+  while (size_ > 3) {
+    const std::size_t ear = shortestEar();
+    LIMN_ASSERT(ear < size_, size_);
+    pieces.add(vertices_[ear == 0 ? size_ - 1 : ear - 1].index, vertices_[ear].index,
+               vertices_[ear + 1 == size_ ? 0 : ear + 1].index);
+    --size_;
+    for (std::size_t k = ear; k < size_; ++k) vertices_[k] = vertices_[k + 1];
+  }
+  fan(pieces);
+}
+
+// The sides of a cut outline, seen from the lone corner A: out to B, across to C and back.
+struct CutOutline {
+  const Outline& outline;
+  const Cut& cut;
+  std::size_t out, across, back;
+
+  CutOutline(const Outline& o, const Cut& c)
+      : outline(o), cut(c), out(c.lone), across((c.lone + 1) % 3), back((c.lone + 2) % 3) {}
+
+  // Vertex `k` of a side: its first corner, the vertices on it, its last corner.
+  std::uint32_t onSide(std::size_t side, std::size_t k) const {
+    if (k == 0) return outline.corners[side];
+    if (k > outline.counts[side]) return outline.corners[(side + 1) % 3];
+    return outline.sides[side][k - 1];
+  }
+  static unsigned sideLine(std::size_t side) { return 1u << side; }
+  // The sides that vertex k of a side lies on.
+  unsigned linesOf(std::size_t side, std::size_t k) const {
+    if (k == 0) return sideLine(side) | sideLine((side + 2) % 3);
+    if (k > outline.counts[side]) return sideLine(side) | sideLine((side + 1) % 3);
+    return sideLine(side);
+  }
+  std::uint32_t first() const { return onSide(out, cut.ends[0]); }
+  std::uint32_t last() const { return onSide(back, cut.ends[1]); }
+
+  // Nothing on the sides but the segment's ends.
+  bool isPlain() const {
+    const auto own = [](std::size_t end, std::size_t count) { return end > 0 && end <= count ? 1u : 0u; };
+    return outline.counts[out] == own(cut.ends[0], outline.counts[out]) && outline.counts[across] == 0 &&
+           outline.counts[back] == own(cut.ends[1], outline.counts[back]);
+  }
+};
+
+// The fan (A; s_0 … s_n) and the strip between s_0 … s_n and BC.
+void fanAndStrip(const CutOutline& o, const View& view, const Places& places, Pieces& pieces) {
+  const std::uint32_t a = o.outline.corners[o.out], b = o.outline.corners[o.across];
+  const std::uint32_t c = o.outline.corners[o.back];
+  const auto samples = o.cut.samples;
+  const std::size_t steps = samples.size() + 1;
+  const auto sample = [&](std::size_t k) {
+    return k == 0 ? o.first() : k == steps ? o.last() : samples[k - 1];
+  };
+  // Distance from the plane through the eye and BC: what the viewer sees of the distance from BC.
+  const vec3 plane = glm::cross(places[c] - places[b], towardsEye(view, places[b]));
+  std::size_t turn = 0;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (std::size_t k = 0; k <= steps; ++k) {
+    const float distance = std::abs(dot(places[sample(k)] - places[b], plane));
+    if (distance < nearest) nearest = distance, turn = k;
+  }
+  for (std::size_t k = 0; k < steps; ++k) pieces.add(a, sample(k), sample(k + 1));
+  for (std::size_t k = 0; k < turn; ++k) pieces.add(b, sample(k + 1), sample(k));
+  pieces.add(b, c, sample(turn));
+  for (std::size_t k = turn; k < steps; ++k) pieces.add(c, sample(k + 1), sample(k));
+}
+
+}  // namespace
+
+void remesh(const Outline& outline, Pieces& pieces) {
+  std::array<std::uint32_t, 3 + 3 * kMaxSideVertices> around;
+  std::size_t size = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    around[size++] = outline.corners[k];
+    for (std::size_t i = 0; i < outline.counts[k]; ++i) around[size++] = outline.sides[k][i];
+  }
+  if (outline.wantsCentre()) {
+    for (std::size_t k = 0; k < size; ++k)
+      pieces.add(outline.centre, around[k], around[k + 1 == size ? 0 : k + 1]);
+    return;
+  }
+  // At most one side has vertices: a fan around the corner opposite to it.
+  const std::size_t apex = outline.counts[0] > 0 ? size - 1 : outline.counts[2] > 0 ? 1 : 0;
+  for (std::size_t k = 1; k + 1 < size; ++k)
+    pieces.add(around[apex], around[(apex + k) % size], around[(apex + k + 1) % size]);
+}
+
+void remesh(const Outline& outline, const Cut& cut, const View& view, const Places& places, Pieces& pieces) {
+  const CutOutline o(outline, cut);
+  if (o.isPlain()) {
+    fanAndStrip(o, view, places, pieces);
+    return;
+  }
+  const unsigned inner = kSegmentLine | (o.linesOf(o.out, cut.ends[0]) & o.linesOf(o.back, cut.ends[1]));
+  const bool backToLone = cut.ends[1] > outline.counts[o.back], outToB = cut.ends[0] > outline.counts[o.out];
+  const auto add = [&](Polygon& polygon, std::size_t side, std::size_t k, bool onSegment) {
+    polygon.add(o.onSide(side, k), o.linesOf(side, k) | (onSegment ? kSegmentLine : 0u), places);
+  };
+
+  // From A to the first end, along the segment, and from its last end back.
+  Polygon lone;
+  for (std::size_t k = 0; k <= cut.ends[0]; ++k)
+    add(lone, o.out, k, k == cut.ends[0] || (k == 0 && backToLone));
+  for (const std::uint32_t sample : cut.samples) lone.add(sample, inner, places);
+  for (std::size_t k = cut.ends[1]; k <= outline.counts[o.back]; ++k) add(lone, o.back, k, k == cut.ends[1]);
+  lone.triangulate(pieces);
+
+  // From the first end over B and C to the last, and back along the segment.
+  Polygon far;
+  for (std::size_t k = cut.ends[0]; k <= outline.counts[o.out]; ++k) add(far, o.out, k, k == cut.ends[0]);
+  for (std::size_t k = 0; k <= outline.counts[o.across]; ++k) add(far, o.across, k, k == 0 && outToB);
+  for (std::size_t k = 0; k <= cut.ends[1]; ++k) add(far, o.back, k, k == cut.ends[1]);
+  for (std::size_t k = cut.samples.size(); k-- > 0;) far.add(cut.samples[k], inner, places);
+  far.triangulate(pieces);
+}
+
+}  // namespace limn::silhouette

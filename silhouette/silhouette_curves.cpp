@@ -1,0 +1,580 @@
+// Silhouette curves: the outline of the smooth shape, which crosses triangles instead of following edges.
+//
+// Based on: L. Wang, C. Tu, W. Wang, X. Meng, B. Chan, D. Yan, "Silhouette Smoothing for Real-Time Rendering
+// of Mesh Surfaces", section III. Differs in: what contour.h, crossed_edges.h, feature_curves.h, remesh.h and
+// blocking.h say, one for each of its steps.
+//
+// A frame: visible vertices → crossed edges and their silhouette points → silhouette triangles and their
+// segments → lowered points → vertices on edges → pieces. Every stage counts, sums and fills by blocks of
+// indices, so the stream is the same for any number of threads.
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numeric>
+
+#include "raster/base/check.h"
+#include "silhouette/blocking.h"
+#include "silhouette/crossed_edges.h"
+#include "silhouette/feature_curves.h"
+#include "silhouette/method.h"
+#include "silhouette/patch.h"
+
+namespace limn::silhouette {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+
+constexpr std::size_t kItemsPerBlock = 4096;
+constexpr std::size_t kTrianglesPerBlock = 256;
+
+// What does not depend on the view.
+struct Prepared {
+  std::vector<EdgeVertices> vertices;  // of every edge
+  std::vector<CurveOffsets> curves;    // bridges and feature curves; zero where an edge stays straight
+  std::vector<std::uint8_t> always;    // edges that are sampled from every viewpoint
+  Blocking blocking;
+};
+
+// The curve across a silhouette triangle, from the side that leaves the lone corner to the one that comes back.
+struct Segment {
+  bool exists = false;
+  std::uint32_t lone = 0;
+  std::array<vec3, 2> ends{};  // before they became vertices near them
+  std::array<vec2, 2> weights{};
+  CurveOffsets offsets{};
+  std::uint32_t steps = 1;
+};
+
+// Where the pieces of a triangle begin in the stream.
+struct Slot {
+  std::uint32_t vertex = 0, triangle = 0;
+};
+
+struct Scratch {
+  std::vector<std::uint8_t> visible;       // per vertex of the mesh
+  std::vector<std::uint32_t> blockCounts;  // then their prefix sums
+  std::vector<CrossedEdge> edges;
+  std::vector<std::uint32_t> recordOf;   // per edge: index into edges, or kNone
+  std::vector<std::uint32_t> triangles;  // that are replaced, ascending
+  std::vector<Segment> segments;         // of the triangles with crossed edges
+  std::vector<std::uint32_t> segmentOf;  // per triangle: index into segments, or kNone
+  std::vector<std::uint32_t> segmentTriangles;
+  std::vector<BlockingPlane> planes;
+  std::vector<std::uint32_t> loweredOf;  // per vertex of the mesh: its vertex in the stream, or kNone
+  std::vector<std::uint32_t> lowered;    // the vertices that have one
+  std::vector<Slot> slots;               // per replaced triangle, then the end
+};
+
+// A side of a triangle as the edge record sees it.
+struct SideView {
+  const CrossedEdge* edge = nullptr;
+  std::size_t face = 0;
+  bool back = false;  // the side runs against the edge
+
+  // A position along the edge as one along the side.
+  std::size_t rank() const { return back ? edge->count + 1 - edge->rank[face] : edge->rank[face]; }
+  float parameter() const { return back ? 1.0f - edge->parameter[face] : edge->parameter[face]; }
+  std::uint32_t vertex(std::size_t k) const {  // k-th on the side, from 0
+    const auto along = static_cast<std::uint32_t>(back ? edge->count - 1 - k : k);
+    return edge->firstVertex + (edge->seam && face == 1 ? edge->count : 0) + along;
+  }
+};
+
+void markReplaced(RefinedStream& stream, std::uint32_t triangle) {
+  std::atomic_ref<std::uint64_t>(stream.replaced[triangle / 64])
+      .fetch_or(std::uint64_t{1} << (triangle % 64), std::memory_order_relaxed);
+}
+
+// One view's refinement; all it refers to outlives it.
+struct Pass {
+  const Mesh& mesh;
+  const Topology& topology;
+  const Prepared& prepared;
+  const View& view;
+  const Parameters& parameters;
+  const Crew& crew;
+  Scratch& scratch;
+  RefinedStream& stream;
+  RefineReport& report;
+  PixelBound bound;
+
+  void run();
+  void findVisible();
+  void findEdges();
+  void listReplaced(std::vector<std::uint32_t>& triangles);
+  void findSegments();
+  void lowerPoints();
+  void lower(std::uint32_t point, const vec3& displacement);
+  void placeEdges();
+  void placePieces();
+  void cleanUp();
+
+  CrossedEdge crossedEdge(std::uint32_t e);
+  Segment segmentOf(std::uint32_t triangle);
+  void addPlanes(std::uint32_t triangle, const Segment& segment);
+  void emitEdge(const CrossedEdge& edge);
+  void emitPieces(std::size_t k);
+  void writeCentre(std::uint32_t at, std::uint32_t triangle);
+  Slot sizeOf(std::uint32_t triangle) const;
+  Outline outlineOf(std::uint32_t triangle) const;
+  bool cutOf(std::uint32_t triangle, const Outline& outline, Cut& cut) const;
+
+  template <class T, class Count, class Fill>
+  void collect(std::size_t items, std::vector<T>& out, const Count& count, const Fill& fill);
+  std::uint32_t steps(const vec3& p, const vec3& q, const CurveOffsets& offsets);
+  EdgeCurve curveOf(std::uint32_t e) const;
+  SideView sideOf(std::uint32_t triangle, std::size_t side) const;
+  vec3 normalAt(const Origin& origin) const;
+  void writeVertex(std::uint32_t at, const vec3& position, const Origin& origin);
+  std::uint32_t firstNew() const { return static_cast<std::uint32_t>(mesh.positions.size()); }
+};
+
+void Pass::run() {
+  const auto start = std::chrono::steady_clock::now();
+  findVisible();
+  findEdges();
+  report.classifyMs =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  listReplaced(scratch.segmentTriangles);
+  findSegments();
+  lowerPoints();
+  placeEdges();
+  listReplaced(scratch.triangles);
+  placePieces();
+  cleanUp();
+}
+
+// Puts fill(item)'s results into `out`, in order: count(item) of them.
+template <class T, class Count, class Fill>
+void Pass::collect(std::size_t items, std::vector<T>& out, const Count& count, const Fill& fill) {
+  std::vector<std::uint32_t>& starts = scratch.blockCounts;
+  starts.assign((items + kItemsPerBlock - 1) / kItemsPerBlock + 1, 0);
+  crew.forBlocks(items, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t sum = 0;
+    for (std::size_t item = begin; item < end; ++item) sum += count(item);
+    starts[begin / kItemsPerBlock + 1] = sum;
+  });
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  out.resize(starts.back());
+  crew.forBlocks(items, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t at = starts[begin / kItemsPerBlock];
+    for (std::size_t item = begin; item < end; ++item)
+      if (const std::uint32_t wanted = count(item); wanted > 0) {
+        fill(item, at);
+        at += wanted;
+      }
+  });
+}
+
+void Pass::findVisible() {
+  scratch.visible.resize(mesh.positions.size());
+  crew.forBlocks(mesh.positions.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      scratch.visible[v] = facing(view, mesh.positions[v], mesh.normals[v]) >= 0.0f ? 1 : 0;
+  });
+}
+
+// Lists the edges that have vertices of their own and marks their triangles.
+void Pass::findEdges() {
+  const std::vector<std::uint8_t>& visible = scratch.visible;
+  const auto wanted = [&](std::size_t e) -> std::uint32_t {
+    const EdgeVertices& v = prepared.vertices[e];
+    const bool crossed = visible[v[0][0]] != visible[v[0][1]] || visible[v[1][0]] != visible[v[1][1]];
+    return prepared.always[e] != 0 || (crossed && !topology.edges()[e].nonManifold) ? 1 : 0;
+  };
+  collect(topology.edges().size(), scratch.edges, wanted, [&](std::size_t e, std::uint32_t at) {
+    scratch.edges[at] = crossedEdge(static_cast<std::uint32_t>(e));
+    scratch.recordOf[e] = at;
+    for (const Side& face : topology.edges()[e].faces)
+      if (face.triangle != kNone) markReplaced(stream, face.triangle);
+  });
+  report.smoothEdges = scratch.edges.size();
+}
+
+CrossedEdge Pass::crossedEdge(std::uint32_t e) {
+  const EdgeVertices& v = prepared.vertices[e];
+  CrossedEdge record;
+  record.edge = e;
+  record.seam = v[0] != v[1];
+  if (prepared.always[e] != 0) {
+    const EdgeCurve curve = curveOf(e);
+    record.segments = steps(curve.ends[0], curve.ends[1], curve.offsets);
+  }
+  for (std::size_t face = 0; face < 2; ++face) {
+    const std::array<std::uint32_t, 2>& ends = v[face];
+    record.crosses[face] = scratch.visible[ends[0]] != scratch.visible[ends[1]];
+    if (record.crosses[face])
+      record.parameter[face] = contourParameter(view, {mesh.positions[ends[0]], mesh.positions[ends[1]]},
+                                                {mesh.normals[ends[0]], mesh.normals[ends[1]]});
+  }
+  return record;
+}
+
+void Pass::listReplaced(std::vector<std::uint32_t>& triangles) {
+  const std::vector<std::uint64_t>& words = stream.replaced;
+  collect(
+      words.size(), triangles,
+      [&](std::size_t word) { return static_cast<std::uint32_t>(std::popcount(words[word])); },
+      [&](std::size_t word, std::uint32_t at) {
+        for (std::uint64_t rest = words[word]; rest != 0; rest &= rest - 1)
+          triangles[at++] =
+              static_cast<std::uint32_t>(64 * word) + static_cast<std::uint32_t>(std::countr_zero(rest));
+      });
+}
+
+void Pass::findSegments() {
+  const std::vector<std::uint32_t>& triangles = scratch.segmentTriangles;
+  scratch.segments.resize(triangles.size());
+  crew.forBlocks(triangles.size(), kTrianglesPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      scratch.segments[k] = segmentOf(triangles[k]);
+      scratch.segmentOf[triangles[k]] = static_cast<std::uint32_t>(k);
+    }
+  });
+}
+
+Segment Pass::segmentOf(std::uint32_t triangle) {
+  const std::uint32_t* corner = &mesh.indices[3 * std::size_t{triangle}];
+  const std::array<std::uint8_t, 3> seen{scratch.visible[corner[0]], scratch.visible[corner[1]],
+                                         scratch.visible[corner[2]]};
+  Segment segment;
+  if (seen[0] == seen[1] && seen[1] == seen[2]) return segment;
+  segment.lone = seen[1] == seen[2] ? 0 : seen[2] == seen[0] ? 1 : 2;
+  const std::array<std::uint32_t, 2> sides{segment.lone, (segment.lone + 2) % 3};
+  std::array<vec3, 2> normals;
+  for (std::size_t end = 0; end < 2; ++end) {
+    const SideView side = sideOf(triangle, sides[end]);
+    if (side.edge == nullptr || !side.edge->crosses[side.face]) return segment;
+    segment.ends[end] = curveOf(side.edge->edge).point(side.edge->parameter[side.face]);
+    segment.weights[end] = sideWeights(sides[end], side.parameter());
+    normals[end] = glm::normalize(normalAt({triangle, segment.weights[end]}));
+  }
+  segment.exists = true;
+  const CurveStyle style{Tangents::kCircular, parameters.robust};
+  segment.offsets = edgeCurve(segment.ends[0], segment.ends[1], {{normals[0], normals[0]}, false},
+                              {{normals[1], normals[1]}, false}, style);
+  segment.steps = steps(segment.ends[0], segment.ends[1], segment.offsets);
+  return segment;
+}
+
+// Every point of a concave segment's triangle feels its plane.
+void Pass::addPlanes(std::uint32_t triangle, const Segment& segment) {
+  const vec3 chord = segment.ends[1] - segment.ends[0];
+  const vec3 n1 = glm::normalize(normalAt({triangle, segment.weights[0]}));
+  const vec3 n2 = glm::normalize(normalAt({triangle, segment.weights[1]}));
+  const float strength = concavity(chord, n1, n2);
+  if (!(strength > 0.0f)) return;
+  const vec3 normal = glm::normalize(n1 + n2);
+  const vec3 middle = curvePoint(segment.ends[0], segment.ends[1], segment.offsets, 0.5f);
+  const vec2 w = 0.5f * (segment.weights[0] + segment.weights[1]);
+  const std::array<float, 3> nearness{1.0f - w.x - w.y, w.x, w.y};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t point = topology.points()[mesh.indices[3 * std::size_t{triangle} + k]];
+    const float weight = strength * Blocking::nearnessWeight(nearness[k]);
+    if (weight > 0.0f && prepared.blocking.reach(point) > 0.0f)
+      scratch.planes.push_back({point, triangle, weight, middle, normal});
+  }
+}
+
+void Pass::lowerPoints() {
+  scratch.planes.clear();
+  scratch.lowered.clear();
+  for (std::size_t k = 0; k < scratch.segments.size(); ++k)
+    if (scratch.segments[k].exists) addPlanes(scratch.segmentTriangles[k], scratch.segments[k]);
+  std::vector<BlockingPlane>& planes = scratch.planes;
+  std::sort(planes.begin(), planes.end(), [](const BlockingPlane& a, const BlockingPlane& b) {
+    return a.point != b.point ? a.point < b.point : a.triangle < b.triangle;
+  });
+  for (std::size_t begin = 0, end = 0; begin < planes.size(); begin = end) {
+    while (end < planes.size() && planes[end].point == planes[begin].point) ++end;
+    const std::uint32_t point = planes[begin].point;
+    const vec3 place = mesh.positions[mesh.indices[prepared.blocking.sidesFrom(point)[0]]];
+    const vec3 displacement =
+        prepared.blocking.displacement(place, std::span(planes).subspan(begin, end - begin));
+    if (displacement != vec3(0.0f)) lower(point, displacement);
+  }
+}
+
+// Gives every vertex at a point one in the stream, and replaces its triangles.
+void Pass::lower(std::uint32_t point, const vec3& displacement) {
+  for (const std::uint32_t side : prepared.blocking.sidesFrom(point)) {
+    const std::uint32_t vertex = mesh.indices[side];
+    markReplaced(stream, side / 3);
+    if (scratch.loweredOf[vertex] != kNone) continue;
+    const auto at = static_cast<std::uint32_t>(scratch.lowered.size());
+    scratch.loweredOf[vertex] = at;
+    scratch.lowered.push_back(vertex);
+    stream.positions.push_back(mesh.positions[vertex] + displacement);
+    stream.normals.push_back(mesh.normals[vertex]);
+    stream.origins.push_back({side / 3, {side % 3 == 1 ? 1.0f : 0.0f, side % 3 == 2 ? 1.0f : 0.0f}});
+  }
+}
+
+// Settles where the points are, gives every edge its place in the stream and writes its vertices.
+void Pass::placeEdges() {
+  const float snap = kSnap * parameters.tolerance;
+  crew.forBlocks(scratch.edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      const std::array<std::uint32_t, 2>& ends = prepared.vertices[scratch.edges[k].edge][0];
+      const std::array<bool, 2> open{scratch.loweredOf[ends[0]] == kNone,
+                                     scratch.loweredOf[ends[1]] == kNone};
+      settle(scratch.edges[k], curveOf(scratch.edges[k].edge), open, bound, snap);
+    }
+  });
+  auto vertices = static_cast<std::uint32_t>(stream.positions.size());
+  for (CrossedEdge& edge : scratch.edges) {
+    edge.firstVertex = vertices;
+    vertices += edge.vertexCount();
+  }
+  stream.positions.resize(vertices);
+  stream.normals.resize(vertices);
+  stream.origins.resize(vertices);
+  crew.forBlocks(scratch.edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) emitEdge(scratch.edges[k]);
+  });
+}
+
+void Pass::emitEdge(const CrossedEdge& record) {
+  const Edge& edge = topology.edges()[record.edge];
+  const EdgeCurve curve = curveOf(record.edge);
+  EdgeVertexList list;
+  const std::size_t count = listVertices(record, list);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const vec3 position = curve.place(list[k], record.segments);
+    for (std::uint32_t face = 0; face < (record.seam ? 2u : 1u); ++face) {
+      const Side& side = edge.faces[face];
+      const float along = edge.runsBack(face) ? 1.0f - list[k].t : list[k].t;
+      writeVertex(record.firstVertex + face * record.count + k, position,
+                  {side.triangle, sideWeights(side.side, along)});
+    }
+  }
+}
+
+void Pass::placePieces() {
+  const std::vector<std::uint32_t>& triangles = scratch.triangles;
+  scratch.slots.resize(triangles.size() + 1);
+  scratch.slots[0] = {static_cast<std::uint32_t>(stream.positions.size()), 0};
+  crew.forBlocks(triangles.size(), kTrianglesPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) scratch.slots[k + 1] = sizeOf(triangles[k]);
+  });
+  for (std::size_t k = 1; k < scratch.slots.size(); ++k) {
+    scratch.slots[k].vertex += scratch.slots[k - 1].vertex;
+    scratch.slots[k].triangle += scratch.slots[k - 1].triangle;
+  }
+  const Slot all = scratch.slots.back();
+  stream.positions.resize(all.vertex);
+  stream.normals.resize(all.vertex);
+  stream.origins.resize(all.vertex);
+  stream.indices.resize(3 * std::size_t{all.triangle});
+  stream.sourceTriangles.resize(all.triangle);
+  report.curvedTriangles = triangles.size();
+  crew.forBlocks(triangles.size(), kTrianglesPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) emitPieces(k);
+  });
+}
+
+// Vertices and triangles that a triangle adds to the stream.
+Slot Pass::sizeOf(std::uint32_t triangle) const {
+  Outline outline;
+  std::uint32_t onSides = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const SideView side = sideOf(triangle, k);
+    outline.counts[k] = side.edge != nullptr ? side.edge->count : 0;
+    onSides += static_cast<std::uint32_t>(outline.counts[k]);
+  }
+  Cut cut;
+  if (cutOf(triangle, outline, cut)) {
+    const std::uint32_t samples = scratch.segments[scratch.segmentOf[triangle]].steps - 1;
+    return {samples, 1 + onSides + 2 * samples};
+  }
+  return outline.wantsCentre() ? Slot{1, 3 + onSides} : Slot{0, 1 + onSides};
+}
+
+// Whether the triangle has a segment, and where it ends on the sides.
+bool Pass::cutOf(std::uint32_t triangle, const Outline& outline, Cut& cut) const {
+  const std::uint32_t index = scratch.segmentOf[triangle];
+  if (index == kNone || !scratch.segments[index].exists) return false;
+  const std::size_t lone = scratch.segments[index].lone, back = (lone + 2) % 3;
+  cut.lone = lone;
+  cut.ends = {sideOf(triangle, lone).rank(), sideOf(triangle, back).rank()};
+  return cut.ends[0] != 0 || cut.ends[1] != outline.counts[back] + 1;
+}
+
+Outline Pass::outlineOf(std::uint32_t triangle) const {
+  Outline outline;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t vertex = mesh.indices[3 * std::size_t{triangle} + k];
+    const std::uint32_t lowered = scratch.loweredOf[vertex];
+    outline.corners[k] = lowered == kNone ? vertex : firstNew() + lowered;
+    const SideView side = sideOf(triangle, k);
+    outline.counts[k] = side.edge != nullptr ? side.edge->count : 0;
+    for (std::size_t i = 0; i < outline.counts[k]; ++i) outline.sides[k][i] = firstNew() + side.vertex(i);
+  }
+  return outline;
+}
+
+void Pass::emitPieces(std::size_t k) {
+  const std::uint32_t triangle = scratch.triangles[k];
+  const Slot& slot = scratch.slots[k];
+  Outline outline = outlineOf(triangle);
+  Pieces pieces;
+  Cut cut;
+  if (cutOf(triangle, outline, cut)) {
+    const Segment& segment = scratch.segments[scratch.segmentOf[triangle]];
+    std::array<std::uint32_t, kMaxSegments> samples;
+    for (std::uint32_t i = 1; i < segment.steps; ++i) {
+      const float t = static_cast<float>(i) / static_cast<float>(segment.steps);
+      const std::uint32_t at = slot.vertex + i - 1;
+      samples[i - 1] = firstNew() + at;
+      writeVertex(at,
+                  polylineVertex(segment.ends[0], segment.ends[1], segment.offsets, static_cast<int>(i),
+                                 static_cast<int>(segment.steps)),
+                  {triangle, (1.0f - t) * segment.weights[0] + t * segment.weights[1]});
+    }
+    cut.samples = std::span(samples).first(segment.steps - 1);
+    remesh(outline, cut, view, {mesh.positions, stream.positions}, pieces);
+  } else {
+    if (outline.wantsCentre()) {
+      outline.centre = firstNew() + slot.vertex;
+      writeCentre(slot.vertex, triangle);
+    }
+    remesh(outline, pieces);
+  }
+  LIMN_ASSERT(slot.triangle + pieces.count == scratch.slots[k + 1].triangle, triangle, pieces.count);
+  for (std::size_t i = 0; i < pieces.count; ++i) {
+    const std::size_t at = slot.triangle + i;
+    std::copy(pieces.triangles[i].begin(), pieces.triangles[i].end(),
+              stream.indices.begin() + static_cast<std::ptrdiff_t>(3 * at));
+    stream.sourceTriangles[at] = triangle;
+  }
+}
+
+// The middle of the patch that the curves of the sides make.
+void Pass::writeCentre(std::uint32_t at, std::uint32_t triangle) {
+  constexpr float third = 1.0f / 3.0f;
+  Patch patch;
+  for (std::size_t k = 0; k < 3; ++k) {
+    patch.corners[k] = mesh.positions[mesh.indices[3 * std::size_t{triangle} + k]];
+    const SideView side = sideOf(triangle, k);
+    if (side.edge == nullptr || prepared.always[side.edge->edge] == 0) continue;
+    const CurveOffsets& offsets = prepared.curves[side.edge->edge];
+    patch.sides[k] = {offsets[side.back ? 1 : 0], offsets[side.back ? 0 : 1]};
+  }
+  writeVertex(at, patch.point(third, third, third), {triangle, {third, third}});
+}
+
+void Pass::cleanUp() {
+  for (const CrossedEdge& edge : scratch.edges) scratch.recordOf[edge.edge] = kNone;
+  for (const std::uint32_t triangle : scratch.segmentTriangles) scratch.segmentOf[triangle] = kNone;
+  for (const std::uint32_t vertex : scratch.lowered) scratch.loweredOf[vertex] = kNone;
+}
+
+// Steps of a polyline with its inner vertices outside the curve (contour.h) that stays within the tolerance.
+std::uint32_t Pass::steps(const vec3& p, const vec3& q, const CurveOffsets& offsets) {
+  if (parameters.segments > 0) return static_cast<std::uint32_t>(parameters.segments);
+  bool capped = false;
+  const auto count = static_cast<std::uint32_t>(
+      polylineSteps(bound.chordError(p, q, offsets), parameters.tolerance, capped));
+  if (capped) std::atomic_ref<std::size_t>(report.cappedEdges).fetch_add(1, std::memory_order_relaxed);
+  return count;
+}
+
+EdgeCurve Pass::curveOf(std::uint32_t e) const {
+  const std::array<std::uint32_t, 2>& ends = prepared.vertices[e][0];
+  return {{mesh.positions[ends[0]], mesh.positions[ends[1]]}, prepared.curves[e]};
+}
+
+SideView Pass::sideOf(std::uint32_t triangle, std::size_t side) const {
+  const std::uint32_t e = topology.sideEdges()[3 * std::size_t{triangle} + side];
+  const std::uint32_t record = e == kNone ? kNone : scratch.recordOf[e];
+  if (record == kNone) return {};
+  const Edge& edge = topology.edges()[e];
+  const std::size_t face = edge.faces[1].triangle == triangle && edge.faces[1].side == side ? 1 : 0;
+  return {&scratch.edges[record], face, edge.runsBack(face)};
+}
+
+// The weighted mean of the corners' normals; where they cancel, the face's.
+vec3 Pass::normalAt(const Origin& origin) const {
+  const std::uint32_t* corner = &mesh.indices[3 * std::size_t{origin.triangle}];
+  const vec2 w = origin.weights;
+  const vec3 normal = (1.0f - w.x - w.y) * mesh.normals[corner[0]] + w.x * mesh.normals[corner[1]] +
+                      w.y * mesh.normals[corner[2]];
+  if (glm::dot(normal, normal) > 1e-12f) return normal;
+  const vec3& a = mesh.positions[corner[0]];
+  return glm::normalize(glm::cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a));
+}
+
+void Pass::writeVertex(std::uint32_t at, const vec3& position, const Origin& origin) {
+  stream.positions[at] = position;
+  stream.normals[at] = normalAt(origin);
+  stream.origins[at] = origin;
+}
+
+class SilhouetteCurves final : public MethodState {
+ public:
+  explicit SilhouetteCurves(const Source& source)
+      : mesh_(source.mesh), topology_(*source.topology), scratch_(static_cast<std::size_t>(source.threads)) {}
+
+  void deform(const Mesh& mesh) override {
+    mesh_ = mesh;
+    isPrepared_ = false;
+  }
+
+  void prepare(const Parameters& parameters, const Crew& crew) override {
+    const Style style{parameters.robust, parameters.features, parameters.boundaries};
+    if (isPrepared_ && style == style_) return;
+    const std::vector<Edge>& edges = topology_.edges();
+    computeEdgeCurves(mesh_, topology_, {Tangents::kCircular, parameters.robust}, crew, prepared_.curves);
+    computeFeatureCurves(mesh_, topology_, crew, prepared_.curves);
+    prepared_.vertices.resize(edges.size());
+    prepared_.always.assign(edges.size(), 0);
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      CurveOffsets& curve = prepared_.curves[e];
+      prepared_.vertices[e] = edgeVertices(mesh_, edges[e]);
+      if ((edges[e].isFeature() && !parameters.features) || (edges[e].boundary && !parameters.boundaries))
+        curve = {};
+      const bool bends = curve[0] != vec3(0.0f) || curve[1] != vec3(0.0f);
+      prepared_.always[e] = bends && (edges[e].isFeature() || edges[e].boundary) ? 1 : 0;
+    }
+    prepared_.blocking.prepare(mesh_, topology_);
+    style_ = style;
+    isPrepared_ = true;
+  }
+
+  void refine(const View& view, const Parameters& parameters, const Crew& crew, RefinedStream& stream,
+              RefineReport& report) override {
+    Scratch& scratch = scratch_[crew.slot()];
+    if (scratch.recordOf.empty()) {
+      scratch.recordOf.assign(topology_.edges().size(), kNone);
+      scratch.segmentOf.assign(mesh_.triangleCount(), kNone);
+      scratch.loweredOf.assign(mesh_.positions.size(), kNone);
+    }
+    Pass pass{mesh_, topology_, prepared_, view, parameters, crew, scratch, stream, report, PixelBound(view)};
+    pass.run();
+  }
+
+ private:
+  struct Style {
+    bool robust = false, features = false, boundaries = false;
+    bool operator==(const Style&) const = default;
+  };
+
+  Mesh mesh_;
+  const Topology& topology_;
+  std::vector<Scratch> scratch_;
+  Prepared prepared_;
+  Style style_;
+  bool isPrepared_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<MethodState> makeSilhouetteCurves(const Source& source) {
+  return std::make_unique<SilhouetteCurves>(source);
+}
+
+}  // namespace limn::silhouette

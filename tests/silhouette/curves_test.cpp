@@ -1,0 +1,151 @@
+// Silhouette curves as a method: what holds for every mesh and viewpoint.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <random>
+
+#include "shapes.h"
+
+namespace limn::silhouette::test {
+namespace {
+
+using glm::vec3;
+
+Parameters curves(float tolerance = 0.25f) {
+  Parameters parameters;
+  parameters.method = Method::kCurves;
+  parameters.tolerance = tolerance;
+  return parameters;
+}
+
+vec3 randomDirection(std::mt19937& random) {
+  std::normal_distribution<float> normal;
+  vec3 v(0.0f);
+  while (glm::length(v) < 1e-3f) v = {normal(random), normal(random), normal(random)};
+  return glm::normalize(v);
+}
+
+View randomView(std::mt19937& random, float radius) {
+  std::uniform_real_distribution<float> uniform;
+  const vec3 direction = randomDirection(random);
+  if (uniform(random) < 0.3f) return orthographicAlong(direction);
+  return perspectiveFrom(radius * (uniform(random) < 0.2f ? 1.02f : 1.2f + 5.0f * uniform(random)) *
+                         direction);
+}
+
+// New vertices between the ends of boundary edges: each makes one open side of the mesh two.
+std::size_t verticesOnBoundaries(const Topology& topology, const RefinedStream& stream) {
+  std::size_t count = 0;
+  for (const Origin& origin : stream.origins) {
+    const std::array<float, 3> weights{1.0f - origin.weights.x - origin.weights.y, origin.weights.x,
+                                       origin.weights.y};
+    for (std::size_t side = 0; side < 3; ++side) {
+      const bool inside = weights[side] > 1e-6f && weights[(side + 1) % 3] > 1e-6f;
+      const std::uint32_t edge = topology.sideEdges()[3 * std::size_t{origin.triangle} + side];
+      if (inside && weights[(side + 2) % 3] <= 1e-6f && topology.edges()[edge].boundary) ++count;
+    }
+  }
+  return count;
+}
+
+TEST(Curves, WatertightFromRandomViewpoints) {
+  std::mt19937 random(11);
+  for (const Shape& shape : allShapes()) {
+    const Topology topology(shape.mesh());
+    Workers workers(1);
+    Refiner refiner(shape.mesh(), topology, workers);
+    RefinedStream stream;
+    stream.clear(shape.mesh().triangleCount());
+    const std::size_t open = openSides(drawnTriangles(shape.mesh(), stream));
+    for (int k = 0; k < 20; ++k) {
+      Parameters parameters = curves(k % 4 == 0 ? 0.02f : 0.25f);
+      parameters.robust = k % 3 != 0;
+      parameters.boundaries = k % 5 == 0;
+      refiner.refine(randomView(random, 2.0f), parameters, stream);
+      ASSERT_TRUE(stream.isConsistent(shape.mesh())) << shape.name << " view " << k;
+      ASSERT_EQ(openSides(drawnTriangles(shape.mesh(), stream)),
+                open + verticesOnBoundaries(topology, stream))
+          << shape.name << " view " << k;
+    }
+  }
+}
+
+// Seen exactly along an edge's plane, vertices lie on the contour: g = 0.
+TEST(Curves, WatertightWhereVerticesLieOnTheContour) {
+  for (const Shape& shape : {icosphere(2), torus(24, 12), cylinder(12)}) {
+    const Topology topology(shape.mesh());
+    Workers workers(1);
+    Refiner refiner(shape.mesh(), topology, workers);
+    RefinedStream stream;
+    for (const vec3& direction : {vec3(1, 0, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0.6f, 0.8f, 0)})
+      for (const float tolerance : {0.0f, 0.25f, 1e9f}) {
+        refiner.refine(orthographicAlong(direction), curves(tolerance), stream);
+        ASSERT_TRUE(stream.isConsistent(shape.mesh())) << shape.name;
+        EXPECT_EQ(openSides(drawnTriangles(shape.mesh(), stream)), 0u) << shape.name;
+      }
+  }
+}
+
+// The farthest point from the middle as seen along z: on a sphere's outline it is the radius everywhere.
+TEST(Curves, OutlineOfASphereIsRound) {
+  const Shape shape = icosphere(2);
+  const Topology topology(shape.mesh());
+  Workers workers(1);
+  Refiner refiner(shape.mesh(), topology, workers);
+  RefinedStream stream;
+  std::mt19937 random(3);
+  for (int k = 0; k < 10; ++k) {
+    const vec3 direction = randomDirection(random);
+    refiner.refine(orthographicAlong(direction), curves(0.02f), stream);
+    const std::vector<vec3> triangles = drawnTriangles(shape.mesh(), stream);
+    const vec3 right = glm::normalize(glm::cross(direction, vec3(0.3f, 0.5f, 0.8f)));
+    const vec3 up = glm::cross(right, direction);
+    for (int angle = 0; angle < 360; ++angle) {
+      const float a = static_cast<float>(angle) * 0.0174533f;
+      const vec3 ray = std::cos(a) * right + std::sin(a) * up;
+      float reach = 0.0f;
+      for (const vec3& p : triangles) reach = std::max(reach, glm::dot(p, ray));
+      EXPECT_NEAR(reach, 1.0f, 2.5e-4f);  // 0.075 pixels; the flat mesh is 0.01 off
+    }
+  }
+}
+
+TEST(Curves, SameForAnyNumberOfThreads) {
+  for (const Shape& shape : {icosphere(5), shaken(torus(60, 40), 3)}) {
+    const Topology topology(shape.mesh());
+    const View view = perspectiveFrom({1, 2, 4});
+    RefinedStream one;
+    for (const int threads : {1, 2, 3, 8}) {
+      Workers workers(threads);
+      Refiner refiner(shape.mesh(), topology, workers);
+      RefinedStream stream;
+      refiner.refine(view, curves(0.01f), stream);
+      if (threads == 1) one = stream;
+      EXPECT_GT(stream.triangleCount(), 0u);
+      EXPECT_EQ(stream.positions, one.positions) << threads;
+      EXPECT_EQ(stream.normals, one.normals) << threads;
+      EXPECT_EQ(stream.indices, one.indices) << threads;
+      EXPECT_EQ(stream.sourceTriangles, one.sourceTriangles) << threads;
+    }
+  }
+}
+
+// A deformed mesh is refined as a new one would be.
+TEST(Curves, DeformedMeshIsAsANewOne) {
+  const Shape rest = torus(16, 8), moved = shaken(rest, 5);
+  const Topology topology(rest.mesh());
+  Workers workers(1);
+  Refiner refiner(rest.mesh(), topology, workers), fresh(moved.mesh(), topology, workers);
+  const View view = perspectiveFrom({1, 2, 4});
+  RefinedStream a, b;
+  refiner.refine(view, curves(), a);
+  refiner.deform(moved.mesh());
+  refiner.refine(view, curves(), a);
+  fresh.refine(view, curves(), b);
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.indices, b.indices);
+}
+
+}  // namespace
+}  // namespace limn::silhouette::test
