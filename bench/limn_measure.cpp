@@ -27,8 +27,13 @@ int run(int argc, char** argv) {
   coherence->add_option("--step", options.steps, "degrees per frame; a list")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
+  CLI::App* const stability =
+      app.add_subcommand("stability", "kernels against exact twins, and the extremes");
+  stability->add_option("--seed", options.seed, "of the inputs")->check(CLI::NonNegativeNumber);
+  stability->add_flag("--quick", options.quick, "fewer cases");
   CLI11_PARSE(app, argc, argv);
   if (coherence->parsed()) return runCoherence(options);
+  if (stability->parsed()) return runStability(options);
   return runOutline(options);
 }
 

@@ -53,5 +53,6 @@ void print(const std::vector<Json>& rows);
 
 int runOutline(const Options& options);
 int runCoherence(const Options& options);
+int runStability(const Options& options);
 
 }  // namespace limn::measure

@@ -1,0 +1,300 @@
+// The silhouette module's kernels against long double.
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "bench/measure/extremes.h"
+#include "bench/measure/stability.h"
+#include "silhouette/edge_curves.h"
+#include "silhouette/patch.h"
+#include "silhouette/pixel_bound.h"
+#include "silhouette/silhouetteness.h"
+#include "silhouette/topology.h"
+
+namespace limn::measure {
+namespace {
+
+using glm::vec3;
+using silhouette::CurveOffsets;
+
+vec3 randomPoint(Extremes& random, const glm::dvec3& center, double size) {
+  return vec3(center + random.unit() * random.uniform(0.1, 1.0) * size);
+}
+
+vec3 randomNormal(Extremes& random) {
+  return vec3(random.unit());
+}
+
+// A pair of triangles that share an edge, far from all other pairs or not, thin or not, beside an eye of its own.
+struct EdgePair {
+  std::array<vec3, 4> points;  // the edge's ends, then the two tips
+  vec3 eye;
+};
+
+EdgePair randomPair(Extremes& random) {
+  const double size = random.magnitude(1e-6, 1e4);
+  // At most a hundred times farther from the origin than large: floats then hold the shape to 1e-5.
+  const glm::dvec3 center = random.unit() * size * random.magnitude(1e-3, 100);
+  EdgePair pair;
+  for (vec3& point : pair.points) point = randomPoint(random, center, size);
+  if (random.oneIn(3)) {  // a needle: one tip near the edge
+    const vec3 on = glm::mix(pair.points[0], pair.points[1], static_cast<float>(random.uniform(0, 1)));
+    pair.points[2] = glm::mix(on, pair.points[2], static_cast<float>(random.magnitude(1e-3, 1)));
+  }
+  pair.eye = vec3(center + random.unit() * size * random.magnitude(3, 1e3));
+  return pair;
+}
+
+using silhouette::Silhouetteness;
+
+Vec3L unitL(const Vec3L& v) {
+  return (1 / length(v)) * v;
+}
+
+long double facingL(const vec3& eye, const Vec3L& point, const Vec3L& normal) {
+  return dot(unitL(Vec3L(eye) - point), normal);
+}
+
+// f of (1), or of the contour variant, from the same floats.
+long double silhouettenessTwin(const EdgePair& pair, const std::array<vec3, 4>& normals,
+                               Silhouetteness kind) {
+  const auto& [a, b, s, t] = pair.points;
+  if (kind == Silhouetteness::kContour) {
+    long double low = 2, high = -2;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const long double g = facingL(pair.eye, Vec3L(pair.points[i]), Vec3L(normals[i]));
+      low = std::min(low, g);
+      high = std::max(high, g);
+    }
+    return low * high;
+  }
+  const Vec3L pa(a), pb(b), middle = 0.5L * (pa + pb);
+  const Vec3L ns = unitL(cross(pb - pa, Vec3L(s) - pa)), nt = unitL(cross(pa - pb, Vec3L(t) - pb));
+  return facingL(pair.eye, middle, ns) * facingL(pair.eye, middle, nt);
+}
+
+double silhouettenessError(std::uint64_t seed, std::size_t cases, Silhouetteness kind) {
+  constexpr std::size_t kBatch = 1000;  // pairs in one mesh, apart from each other
+  Extremes random(seed);
+  Largest largest;
+  silhouette::Parameters parameters;
+  parameters.silhouetteness = kind;
+  parameters.features = false;
+  parameters.beta = 1.0f;  // then α = 1 - f
+  const silhouette::Crew crew(0);
+  for (std::size_t first = 0; first < cases; first += kBatch) {
+    std::vector<EdgePair> pairs;
+    std::vector<vec3> positions, normals;
+    std::vector<std::uint32_t> indices;
+    for (std::size_t i = 0; i < std::min(kBatch, cases - first); ++i) {
+      const auto base = static_cast<std::uint32_t>(positions.size());
+      pairs.push_back(randomPair(random));
+      for (const vec3& point : pairs.back().points) {
+        positions.push_back(point);
+        normals.push_back(randomNormal(random));
+      }
+      for (const std::uint32_t k : {0, 1, 2, 1, 0, 3}) indices.push_back(base + k);
+    }
+    const silhouette::Mesh mesh{positions, normals, indices};
+    const silhouette::Topology topology(mesh);
+    silhouette::EdgeTest test;
+    test.prepare(mesh, topology, parameters, crew);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (topology.isDegenerate(2 * i) || topology.isDegenerate(2 * i + 1)) continue;
+      silhouette::View view;
+      view.eye = pairs[i].eye;
+      const std::array<vec3, 4> own{normals[4 * i], normals[4 * i + 1], normals[4 * i + 2],
+                                    normals[4 * i + 3]};
+      const long double f = silhouettenessTwin(pairs[i], own, kind);
+      const long double alpha = f <= 0 ? 1 : f >= 1 ? 0 : 1 - f;
+      largest.see(test.alpha(view, parameters, topology.sideEdges()[6 * i]) - alpha);
+    }
+  }
+  return largest.value();
+}
+
+double edgeTestError(std::uint64_t seed, std::size_t cases) {
+  return silhouettenessError(seed, cases, Silhouetteness::kEdge);
+}
+
+double contourTestError(std::uint64_t seed, std::size_t cases) {
+  return silhouettenessError(seed, cases, Silhouetteness::kContour);
+}
+
+double wedgeError(std::uint64_t seed, std::size_t cases) {
+  Extremes random(seed);
+  Largest largest;
+  for (std::size_t i = 0; i < cases; ++i) {
+    const vec3 s = randomNormal(random);
+    const vec3 t = random.oneIn(3) ? glm::normalize(s + vec3(random.unit() * random.magnitude(1e-6, 1)))
+                                   : randomNormal(random);
+    const long double phi = random.uniform(0, 3.14159);
+    const auto sine = static_cast<float>(std::sin(phi)), cosine = static_cast<float>(std::cos(phi));
+    const long double theta = std::atan2(length(cross(Vec3L(s), Vec3L(t))), dot(Vec3L(s), Vec3L(t)));
+    const long double beta = std::max(0.0L, std::sin(phi) * std::sin(phi + theta));
+    largest.see(silhouette::wedgeBeta(s, t, sine, cosine) - beta);
+  }
+  return largest.value();
+}
+
+// c_ij - l_ij of (7), of (8), and with the tangent length of a circular arc.
+Vec3L offsetTwin(const Vec3L& e, const silhouette::EdgeEnd& end, silhouette::Tangents tangents) {
+  Vec3L projected;
+  if (end.feature) {
+    const Vec3L line = unitL(cross(Vec3L(end.normal[1]), Vec3L(end.normal[0])));
+    projected = dot(e, line) * line;
+  } else {
+    const Vec3L n(end.normal[0]);
+    projected = e - dot(e, n) * n;
+  }
+  if (tangents == silhouette::Tangents::kProjected) return (1 / 3.0L) * (projected - e);
+  const long double cosine = std::max(0.5L, std::min(1.0L, length(projected) / length(e)));
+  return (1 / 3.0L) * (2 / (cosine * (1 + cosine)) * projected - e);
+}
+
+double edgeCurveError(std::uint64_t seed, std::size_t cases, silhouette::Tangents tangents) {
+  Extremes random(seed);
+  Largest largest;
+  for (std::size_t i = 0; i < cases; ++i) {
+    const EdgePair pair = randomPair(random);
+    const vec3 p = pair.points[0], q = pair.points[1];
+    std::array<silhouette::EdgeEnd, 2> ends;
+    for (silhouette::EdgeEnd& end : ends) {
+      end.feature = random.oneIn(2);
+      end.normal[0] = end.normal[1] = randomNormal(random);
+      // Feature normals between two degrees apart and two degrees from opposed.
+      while (end.feature && glm::length(glm::cross(end.normal[0], end.normal[1])) < 0.035f) {
+        end.normal[1] = randomNormal(random);
+      }
+    }
+    const CurveOffsets offsets = silhouette::edgeCurve(p, q, ends[0], ends[1], {tangents, false});
+    const Vec3L e = Vec3L(q) - Vec3L(p);
+    largest.see(length(Vec3L(offsets[0]) - offsetTwin(e, ends[0], tangents)) / length(e));
+    largest.see(length(Vec3L(offsets[1]) - offsetTwin(-1.0L * e, ends[1], tangents)) / length(e));
+  }
+  return largest.value();
+}
+
+double projectedCurveError(std::uint64_t seed, std::size_t cases) {
+  return edgeCurveError(seed, cases, silhouette::Tangents::kProjected);
+}
+
+double circularCurveError(std::uint64_t seed, std::size_t cases) {
+  return edgeCurveError(seed, cases, silhouette::Tangents::kCircular);
+}
+
+double geodesicCurveError(std::uint64_t seed, std::size_t cases) {
+  Extremes random(seed);
+  Largest largest;
+  for (std::size_t i = 0; i < cases; ++i) {
+    const EdgePair pair = randomPair(random);
+    std::array<silhouette::EdgeEnd, 2> ends;
+    for (silhouette::EdgeEnd& end : ends) end.normal[0] = end.normal[1] = randomNormal(random);
+    const CurveOffsets offsets = silhouette::edgeCurve(pair.points[0], pair.points[1], ends[0], ends[1],
+                                                       {silhouette::Tangents::kGeodesic, false});
+    const Vec3L e = Vec3L(pair.points[1]) - Vec3L(pair.points[0]), ni(ends[0].normal[0]),
+                nj(ends[1].normal[0]);
+    const long double hi = dot(e, ni), hj = dot(e, nj), k = dot(ni, nj), determinant = 4 - k * k;
+    const long double lambda = -(2 * hi + k * hj) / determinant, mu = -(2 * hj + k * hi) / determinant;
+    largest.see(length(Vec3L(offsets[0]) - (1 / 3.0L) * (2 * lambda * ni - mu * nj)) / length(e));
+    largest.see(length(Vec3L(offsets[1]) - (1 / 3.0L) * (lambda * ni - 2 * mu * nj)) / length(e));
+  }
+  return largest.value();
+}
+
+// A Bézier triangle by de Casteljau's rule from absolute control points.
+Vec3L patchTwin(const silhouette::Patch& patch, long double u, long double v, long double w) {
+  const Vec3L p(patch.corners[0]), q(patch.corners[1]), r(patch.corners[2]);
+  const auto inner = [](const Vec3L& a, const Vec3L& b, const vec3& d) {
+    return (1 / 3.0L) * (2.0L * a + b) + Vec3L(d);
+  };
+  const Vec3L b210 = inner(p, q, patch.sides[0][0]), b120 = inner(q, p, patch.sides[0][1]);
+  const Vec3L b021 = inner(q, r, patch.sides[1][0]), b012 = inner(r, q, patch.sides[1][1]);
+  const Vec3L b102 = inner(r, p, patch.sides[2][0]), b201 = inner(p, r, patch.sides[2][1]);
+  const Vec3L b111 = 0.25L * (b210 + b120 + b021 + b012 + b102 + b201) - (1 / 6.0L) * (p + q + r);
+  const auto at = [&](const Vec3L& a, const Vec3L& b, const Vec3L& c) { return u * a + v * b + w * c; };
+  const Vec3L c200 = at(p, b210, b201), c020 = at(b120, q, b021), c002 = at(b102, b012, r);
+  const Vec3L c110 = at(b210, b120, b111), c011 = at(b111, b021, b012), c101 = at(b201, b111, b102);
+  return at(at(c200, c110, c101), at(c110, c020, c011), at(c101, c011, c002));
+}
+
+double patchError(std::uint64_t seed, std::size_t cases) {
+  Extremes random(seed);
+  Largest largest;
+  for (std::size_t i = 0; i < cases; ++i) {
+    const double size = random.magnitude(1e-6, 1e6);
+    const glm::dvec3 center = random.unit() * size * random.magnitude(1e-3, 1e3);
+    silhouette::Patch patch;
+    double reach = 0.0;
+    for (vec3& corner : patch.corners) {
+      corner = randomPoint(random, center, size);
+      reach = std::max(reach, double(glm::length(corner)));
+    }
+    for (CurveOffsets& side : patch.sides) side = {vec3(random.unit() * size), vec3(random.unit() * size)};
+    const auto u = static_cast<float>(random.uniform(0, 1)),
+               v = static_cast<float>(random.uniform(0, 1.0 - u));
+    const float w = 1.0f - u - v;
+    const Vec3L twin = patchTwin(patch, u, v, 1.0L - u - v);
+    largest.see(length(Vec3L(patch.point(u, v, w)) - twin) / ((reach + size) * 0x1p-24));
+  }
+  return largest.value();
+}
+
+// Pixels of a projected point in a window of 16384 pixels, points no farther from the model's origin than their depth.
+double projectionError(std::uint64_t seed, std::size_t cases) {
+  Extremes random(seed);
+  Largest largest;
+  for (std::size_t i = 0; i < cases; ++i) {
+    const double size = random.magnitude(1e-6, 1e6);
+    Projection projection;
+    projection.pixelsX = projection.pixelsY = 16384.0f;
+    projection.width = projection.height = 16384;
+    projection.nearPlane = static_cast<float>(size * 1e-3);
+    projection.farPlane = static_cast<float>(size * 1e4);
+    glm::dmat4 modelToView(1.0);
+    modelToView[3] = glm::dvec4(0, 0, -2.0 * size, 1);
+    const silhouette::View view = silhouette::makeView(projection, modelToView);
+    const vec3 p(random.unit() * size * 0.45), q(random.unit() * size * 0.45);
+    const auto pixel = [&](const vec3& point, int axis) {
+      const long double depth = -(static_cast<long double>(point.z) + view.modelToView[3][2]);
+      return static_cast<long double>(point[axis]) / depth * projection.pixelsX;
+    };
+    const long double distance = std::hypot(pixel(p, 0) - pixel(q, 0), pixel(p, 1) - pixel(q, 1));
+    largest.see(silhouette::PixelBound(view).distance(p, q) - distance);
+  }
+  return largest.value();
+}
+
+constexpr const char* kPairDomain =
+    "sizes 1e-6 to 1e4, up to 100 sizes from the origin, needles of 1:1000, eye 3 sizes away or more";
+constexpr const char* kCurveDomain = "as for silhouetteness; feature normals 2 to 178 degrees apart";
+constexpr const char* kFarOrigin =
+    "farther from the origin floats lose the shape itself, in proportion; never NaN";
+constexpr const char* kFeatureOutside =
+    "between 1 and 1/4 degree a feature end turns into a smooth or a straight one, continuously";
+
+constexpr std::array kChecks{
+    KernelCheck{"silhouetteness by edge", "alpha at beta = 1", 1e-5, kPairDomain, kFarOrigin, edgeTestError},
+    KernelCheck{"silhouetteness by contour", "alpha at beta = 1", 1e-6, kPairDomain, kFarOrigin,
+                contourTestError},
+    KernelCheck{"beta of a wedge", "beta", 1e-6, "0 to 180 degrees, any two unit normals", "clamped at 0",
+                wedgeError},
+    KernelCheck{"edge curve, projected", "edge lengths", 1e-6, kCurveDomain, kFeatureOutside,
+                projectedCurveError},
+    KernelCheck{"edge curve, circular", "edge lengths", 2e-6, kCurveDomain, kFeatureOutside,
+                circularCurveError},
+    KernelCheck{"edge curve, geodesic", "edge lengths", 1e-6, kPairDomain, kFarOrigin, geodesicCurveError},
+    KernelCheck{"patch point", "ulp of the largest coordinate", 5.0,
+                "sizes 1e-6 to 1e6, up to 1000 from the origin", "the same, to overflow", patchError},
+    KernelCheck{"projection for segment counts", "pixels", 0.005,
+                "window of 16384 pixels, points no farther from the origin than half their depth",
+                "grows with the ratio; depths before the near plane count as there", projectionError},
+};
+
+}  // namespace
+
+std::span<const KernelCheck> silhouetteChecks() {
+  return kChecks;
+}
+
+}  // namespace limn::measure
