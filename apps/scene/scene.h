@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/scene/stored_curves.h"
 #include "raster/material.h"
 #include "raster/raster.h"
 #include "raster/texture.h"
@@ -46,6 +47,7 @@ struct Mesh {
   std::vector<MorphTarget> targets;
   std::vector<float> weights;        ///< default weights of the targets
   std::vector<SkinBinding> skinning; ///< 0, 1 or 2 sets
+  StoredCurves curves;               ///< fitted beforehand to a finer mesh, or empty
 };
 
 struct Node {

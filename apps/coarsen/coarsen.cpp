@@ -1,0 +1,152 @@
+// A fine mesh → outline weights → fewer triangles → fitted patches → guarded → stored numbers.
+#include "apps/coarsen/coarsen.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+#include "apps/coarsen/fit.h"
+#include "apps/coarsen/outline_weight.h"
+#include "apps/coarsen/simplify.h"
+#include "apps/coarsen/store.h"
+#include "raster/base/check.h"
+
+namespace limn::coarsen {
+namespace {
+
+using glm::dvec3;
+using glm::vec3;
+
+constexpr double kWeightFloor = 0.2;  // of the mean, for what no outline shows
+// Shares of the time, for progress.
+constexpr double kWeighed = 0.1, kSimplified = 0.3, kFitted = 0.95;
+
+/// A fine mesh, ready to be coarsened.
+struct Fine {
+  std::vector<Index> pointOf;
+  Surface surface;
+  std::vector<double> weights;
+
+  Fine(const scene::Mesh& mesh, Workers& workers)
+      : surface(makeSurface(mesh.positions, mesh.normals, mesh.indices, &pointOf)),
+        weights(outlineWeights(surface, kWeightFloor, workers)) {}
+};
+
+void tell(const Progress& progress, double from, double to, double part) {
+  if (progress) progress(from + (to - from) * part);
+}
+
+template <class T>
+std::vector<T> gathered(const std::vector<T>& all, const std::vector<Index>& elements) {
+  std::vector<T> result;
+  if (all.empty()) return result;
+  result.reserve(elements.size());
+  for (const Index element : elements) result.push_back(all[element]);
+  return result;
+}
+
+/// The mesh of some of its vertices.
+scene::Mesh subset(const scene::Mesh& mesh, const std::vector<Index>& vertices) {
+  scene::Mesh out;
+  out.name = mesh.name;
+  out.origin = mesh.origin;
+  out.weights = mesh.weights;
+  out.positions = gathered(mesh.positions, vertices);
+  out.normals = gathered(mesh.normals, vertices);
+  out.texcoords = gathered(mesh.texcoords, vertices);
+  out.colors = gathered(mesh.colors, vertices);
+  out.tangents = gathered(mesh.tangents, vertices);
+  for (const scene::MorphTarget& target : mesh.targets)
+    out.targets.push_back({gathered(target.positions, vertices), gathered(target.normals, vertices),
+                           gathered(target.tangents, vertices)});
+  for (const scene::SkinBinding& binding : mesh.skinning)
+    out.skinning.push_back({gathered(binding.joints, vertices), gathered(binding.weights, vertices)});
+  return out;
+}
+
+std::vector<Index> partOfTriangles(const scene::Mesh& mesh) {
+  std::vector<Index> parts(mesh.indices.size() / 3, 0);
+  for (Index part = 0; part < mesh.parts.size(); ++part)
+    for (Index t = 0; t < mesh.parts[part].triangleCount; ++t)
+      parts[mesh.parts[part].firstTriangle + t] = part;
+  return parts;
+}
+
+/// The coarse mesh with the source's parts, vertices in the order of their first use.
+scene::Mesh assemble(const scene::Mesh& fine, const std::vector<Index>& partOf,
+                     const Simplified& simplified) {
+  std::vector<Index> order(simplified.triangles.size());
+  for (Index t = 0; t < order.size(); ++t) order[t] = t;
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return partOf[simplified.triangles[a]] < partOf[simplified.triangles[b]];
+  });
+  std::vector<Index> vertices, indices, number(fine.positions.size(), kNone);
+  for (const Index t : order)
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Index vertex = simplified.indices[3 * t + corner];
+      if (number[vertex] == kNone) {
+        number[vertex] = static_cast<Index>(vertices.size());
+        vertices.push_back(vertex);
+      }
+      indices.push_back(number[vertex]);
+    }
+  scene::Mesh out = subset(fine, vertices);
+  out.indices = std::move(indices);
+  for (Index k = 0; k < order.size(); ++k) {
+    const raster::Part& source = fine.parts[partOf[simplified.triangles[order[k]]]];
+    if (out.parts.empty() || out.parts.back().material != source.material)
+      out.parts.push_back({k, 0, source.material});
+    ++out.parts.back().triangleCount;
+  }
+  return out;
+}
+
+/// Fits, guards and stores curves for `coarse`; moves its vertices where `settings` allow it.
+void fitCurves(const Fine& fine, const FitSettings& settings, Workers& workers, scene::Mesh& coarse,
+               Report* report, const Progress& progress) {
+  std::vector<Index> pointOf;
+  const Surface surface = makeSurface(coarse.positions, coarse.normals, coarse.indices, &pointOf);
+  PatchNet net(surface.points, surface.corners, surface.lines);
+  fitPatches(fine.surface, fine.weights, settings, workers, net, [&](int round) {
+    tell(progress, kSimplified, kFitted, static_cast<double>(round) / settings.rounds);
+  });
+  const GuardReport guard = guardPatches(fine.surface, workers, net);
+  if (settings.moveCorners)
+    for (std::size_t v = 0; v < coarse.positions.size(); ++v)
+      coarse.positions[v] = vec3(net.controls[pointOf[v]]);
+  storeCurves(net, surface.triangles, coarse);
+  if (report != nullptr) {
+    report->guard = guard;
+    report->fineTriangles = fine.surface.triangleCount();
+  }
+  tell(progress, 0.0, 1.0, 1.0);
+}
+
+}  // namespace
+
+scene::Mesh coarsenMesh(const scene::Mesh& fine, const Settings& settings, Workers& workers, Report* report,
+                        const Progress& progress) {
+  require(settings.triangles >= 4, "at least 4 triangles");
+  require(fine.indices.size() >= 3, "a mesh with triangles");
+  const Fine prepared(fine, workers);
+  tell(progress, 0.0, kWeighed, 1.0);
+  const std::vector<Index> partOf = partOfTriangles(fine);
+  const SimplifyInput input{fine.indices, fine.normals,     prepared.pointOf,
+                            partOf,       prepared.surface, prepared.weights};
+  const Simplified simplified =
+      simplify(input, settings.triangles, [&](double part) { tell(progress, kWeighed, kSimplified, part); });
+  scene::Mesh coarse = assemble(fine, partOf, simplified);
+  fitCurves(prepared, FitSettings{}, workers, coarse, report, progress);
+  return coarse;
+}
+
+void fitMesh(const scene::Mesh& fine, scene::Mesh& coarse, Workers& workers, Report* report,
+             const Progress& progress) {
+  require(fine.indices.size() >= 3 && coarse.indices.size() >= 3, "meshes with triangles");
+  const Fine prepared(fine, workers);
+  tell(progress, 0.0, kSimplified, 1.0);
+  FitSettings settings;
+  settings.moveCorners = false;
+  fitCurves(prepared, settings, workers, coarse, report, progress);
+}
+
+}  // namespace limn::coarsen

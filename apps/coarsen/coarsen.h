@@ -1,0 +1,34 @@
+// From a fine mesh to a coarse one with fitted curves.
+#pragma once
+
+#include <functional>
+
+#include "apps/coarsen/guard.h"
+#include "apps/scene/scene.h"
+#include "raster/base/workers.h"
+
+namespace limn::coarsen {
+
+struct Settings {
+  std::size_t triangles = 500;  ///< at most, >= 4
+};
+
+struct Report {
+  GuardReport guard;
+  std::size_t fineTriangles = 0;
+};
+
+/// Gets what is done of the whole, 0 to 1; may be empty.
+using Progress = std::function<void(double)>;
+
+/// Simplifies `fine`, fits curves to it and moves the vertices to where the patches want them. Normals, texture
+/// coordinates, colours, bones and morph targets are those of the fine mesh's vertices. The same bits for any number of
+/// threads. Throws std::invalid_argument for a mesh without triangles or settings out of range.
+scene::Mesh coarsenMesh(const scene::Mesh& fine, const Settings& settings, Workers& workers,
+                        Report* report = nullptr, const Progress& progress = {});
+
+/// Fits curves for `coarse` as it is to `fine`: nothing of it changes but its fitted curves. Both are in the same space.
+void fitMesh(const scene::Mesh& fine, scene::Mesh& coarse, Workers& workers, Report* report = nullptr,
+             const Progress& progress = {});
+
+}  // namespace limn::coarsen
