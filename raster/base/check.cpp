@@ -7,9 +7,9 @@
 
 namespace limn {
 
-void require(bool holds, std::string_view what, const std::source_location& where) {
+void require(bool holds, std::string_view what, const char* function) {
   if (holds) return;
-  throw std::invalid_argument(std::string(where.function_name()) + ": " + std::string(what));
+  throw std::invalid_argument(std::string(function) + ": " + std::string(what));
 }
 
 void detail::assertionFailed(const char* condition, const char* file, int line, const double* values,

@@ -3,14 +3,13 @@
 //   LIMN_ASSERT(...)    what cannot happen: prints its values and aborts; compiled out with NDEBUG
 #pragma once
 
-#include <source_location>
 #include <string_view>
 
 namespace limn {
 
-/// Throws std::invalid_argument("FUNCTION: what") unless `holds`.
-void require(bool holds, std::string_view what,
-             const std::source_location& where = std::source_location::current());
+/// Throws std::invalid_argument("FUNCTION: what") unless `holds`. (The builtin is known to g++ and clang++ alike; clang++
+/// before 15 lacks what std::source_location needs.)
+void require(bool holds, std::string_view what, const char* function = __builtin_FUNCTION());
 
 namespace detail {
 [[noreturn]] void assertionFailed(const char* condition, const char* file, int line, const double* values,
@@ -28,7 +27,7 @@ template <class... T>
 #ifdef NDEBUG
 #define LIMN_ASSERT(condition, ...) static_cast<void>(0)
 #else
-#define LIMN_ASSERT(condition, ...)    \
-  ((condition) ? static_cast<void>(0)  \
+#define LIMN_ASSERT(condition, ...)   \
+  ((condition) ? static_cast<void>(0) \
                : ::limn::detail::assertionFailed(#condition, __FILE__, __LINE__ __VA_OPT__(, ) __VA_ARGS__))
 #endif
