@@ -25,7 +25,7 @@ struct LoadOptions {
 Scene load(const std::string& model, const LoadOptions& options = {});
 
 struct BuiltinModel {
-  std::string name;         ///< after "builtin:"
+  std::string name;  ///< after "builtin:"
   std::string description;
 };
 std::vector<BuiltinModel> builtinModels();

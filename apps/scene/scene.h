@@ -45,9 +45,9 @@ struct Mesh {
   std::vector<std::uint32_t> indices;
   std::vector<raster::Part> parts;
   std::vector<MorphTarget> targets;
-  std::vector<float> weights;        ///< default weights of the targets
-  std::vector<SkinBinding> skinning; ///< 0, 1 or 2 sets
-  StoredCurves curves;               ///< fitted beforehand to a finer mesh, or empty
+  std::vector<float> weights;         ///< default weights of the targets
+  std::vector<SkinBinding> skinning;  ///< 0, 1 or 2 sets
+  StoredCurves curves;                ///< fitted beforehand to a finer mesh, or empty
 };
 
 struct Node {
@@ -70,9 +70,9 @@ struct Skin {
 struct Camera {
   std::string name;
   bool perspective = true;
-  double yfov = 0.5235987755982988;  ///< radians
-  double aspect = 0.0;               ///< 0 = the window's
-  double xmag = 1.0, ymag = 1.0;     ///< orthographic half extents
+  double yfov = 0.5235987755982988;                                            ///< radians
+  double aspect = 0.0;                                                         ///< 0 = the window's
+  double xmag = 1.0, ymag = 1.0;                                               ///< orthographic half extents
   double nearPlane = 0.0, farPlane = std::numeric_limits<double>::infinity();  ///< 0 = automatic
 };
 
@@ -104,8 +104,8 @@ struct Animation {
 struct Scene {
   std::string name;
   std::vector<Mesh> meshes;
-  std::vector<Node> nodes;           ///< parents before children; only those of the drawn scene have effect
-  std::vector<bool> inScene;         ///< per node
+  std::vector<Node> nodes;    ///< parents before children; only those of the drawn scene have effect
+  std::vector<bool> inScene;  ///< per node
   std::vector<Skin> skins;
   std::vector<Camera> cameras;
   std::vector<Light> lights;

@@ -18,12 +18,12 @@ double polynomial(const std::array<double, N>& c, double x) {
 }
 
 // Taylor coefficients in x²; the first omitted terms are below 1e-19 on [0, pi/4].
-constexpr std::array<double, 8> kSine = {-1.0 / 6.0,           1.0 / 120.0,        -1.0 / 5040.0,
-                                         1.0 / 362880.0,       -1.0 / 39916800.0,  1.0 / 6227020800.0,
-                                         -1.0 / 1307674368000.0, 1.0 / 355687428096000.0};
-constexpr std::array<double, 8> kCosine = {1.0 / 24.0,          -1.0 / 720.0,        1.0 / 40320.0,
-                                           -1.0 / 3628800.0,    1.0 / 479001600.0,   -1.0 / 87178291200.0,
-                                           1.0 / 20922789888000.0, -1.0 / 6402373705728000.0};
+constexpr std::array<double, 8> kSine = {
+    -1.0 / 6.0,        1.0 / 120.0,        -1.0 / 5040.0,          1.0 / 362880.0,
+    -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368000.0, 1.0 / 355687428096000.0};
+constexpr std::array<double, 8> kCosine = {
+    1.0 / 24.0,        -1.0 / 720.0,         1.0 / 40320.0,          -1.0 / 3628800.0,
+    1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0, -1.0 / 6402373705728000.0};
 
 // On |x| <= pi/4, with the low part of the reduced argument.
 SinCos sinCosReduced(double x, double low) {
@@ -36,10 +36,14 @@ SinCos sinCosReduced(double x, double low) {
 // (sin, cos) of quadrant * pi/2 + the reduced angle.
 SinCos turned(SinCos r, std::int64_t quadrant) {
   switch (quadrant & 3) {
-    case 0: return r;
-    case 1: return {r.cos, -r.sin};
-    case 2: return {-r.sin, -r.cos};
-    default: return {-r.cos, r.sin};
+    case 0:
+      return r;
+    case 1:
+      return {r.cos, -r.sin};
+    case 2:
+      return {-r.sin, -r.cos};
+    default:
+      return {-r.cos, r.sin};
   }
 }
 
@@ -133,7 +137,8 @@ double exp2(double x) {
                                               1.0 / 479001600.0,
                                               1.0 / 6227020800.0,
                                               1.0 / 87178291200.0};
-  const double scale = std::bit_cast<double>(static_cast<std::uint64_t>(static_cast<std::int64_t>(whole) + 1023) << 52);
+  const double scale =
+      std::bit_cast<double>(static_cast<std::uint64_t>(static_cast<std::int64_t>(whole) + 1023) << 52);
   return polynomial(kSeries, y) * scale;
 }
 

@@ -12,9 +12,10 @@ struct Projection {
   bool perspective = true;
   float pixelsX = 0;  ///< pixels per unit of x at w = 1; > 0
   float pixelsY = 0;  ///< pixels per unit of y at w = 1; > 0
-  float nearPlane = 0;  ///< distance of the near plane from the eye; > 0 for perspective, any for orthographic
-  float farPlane = 0;   ///< distance of the far plane; > nearPlane
-  int width = 0;        ///< of the window in pixels, 1 … 16384
+  float nearPlane =
+      0;               ///< distance of the near plane from the eye; > 0 for perspective, any for orthographic
+  float farPlane = 0;  ///< distance of the far plane; > nearPlane
+  int width = 0;       ///< of the window in pixels, 1 … 16384
   int height = 0;
 };
 

@@ -41,7 +41,9 @@ TEST(Elementary, ArcTangentAndArcCosine) {
   std::uniform_real_distribution<double> any(-3, 3);
   for (int i = 0; i < 200000; ++i) {
     const double x = any(random), y = any(random);
-    EXPECT_LE(ulps(limn::arcTangent2(y, x), std::atan2(static_cast<long double>(y), static_cast<long double>(x)), 1e-10), 3.0)
+    EXPECT_LE(ulps(limn::arcTangent2(y, x),
+                   std::atan2(static_cast<long double>(y), static_cast<long double>(x)), 1e-10),
+              3.0)
         << y << ' ' << x;
     const double c = x / 3;
     EXPECT_NEAR(limn::arcCosine(c), std::acos(c), 1e-14) << c;

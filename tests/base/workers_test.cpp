@@ -28,6 +28,8 @@ TEST(Workers, EveryIndexOnceAndSlotsAreExclusive) {
   }
 }
 
-TEST(Workers, RefusesNoThreads) { EXPECT_THROW(limn::Workers(0), std::invalid_argument); }
+TEST(Workers, RefusesNoThreads) {
+  EXPECT_THROW(limn::Workers(0), std::invalid_argument);
+}
 
 }  // namespace
