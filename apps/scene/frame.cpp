@@ -194,22 +194,30 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
   State& s = *state_;
   s.instances.resize(pose.instances.size());
   s.tasks.clear();
-  for (std::size_t i = 0; i < pose.instances.size(); ++i) s.place(pose.instances[i], camera, s.instances[i]);
+  for (std::size_t i = 0; i < pose.instances.size(); ++i) {
+    if (pose.instances[i].visible) s.place(pose.instances[i], camera, s.instances[i]);
+  }
   silhouette::refineAll(s.tasks, settings.refinement, s.workers);
 
   s.draws.clear();
   std::uint32_t firstId = 0;
+  std::size_t placed = 0;
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
     const Mesh& mesh = s.scene.meshes[pose.instances[i].mesh];
     InstanceResources& resources = s.instances[i];
+    const std::uint32_t id = firstId;
+    firstId += static_cast<std::uint32_t>(mesh.indices.size() / 3);
+    if (!pose.instances[i].visible) {
+      resources.stream = {};
+      continue;
+    }
     const std::vector<silhouette::Origin>& origins = resources.stream.origins;
     interpolate<glm::vec2>(mesh, origins, mesh.texcoords, resources.texcoords);
     interpolate<glm::vec4>(mesh, origins, mesh.colors, resources.colors);
     interpolate<glm::vec4>(mesh, origins, resources.shapeTangents, resources.streamTangents);
     raster::Draw& draw = s.draws.emplace_back(s.describe(pose.instances[i], resources));
-    draw.modelToView = s.tasks[i].view.modelToView;
-    draw.firstId = firstId;
-    firstId += static_cast<std::uint32_t>(mesh.indices.size() / 3);
+    draw.modelToView = s.tasks[placed++].view.modelToView;
+    draw.firstId = id;
   }
   viewLights(s.scene, pose, camera, settings, s.lights);
   const double refineMs = millisecondsSince(start);

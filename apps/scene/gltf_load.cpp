@@ -11,13 +11,21 @@
 namespace limn::scene {
 namespace {
 
-std::size_t countTriangles(const Scene& scene) {
-  std::size_t count = 0;
+/// Counts the triangles that the scene draws and charges what each copy of a mesh takes to draw: a small file may place a
+/// mesh many times.
+std::size_t chargeInstances(GltfDocument& document, const Scene& scene) {
+  constexpr std::size_t kBytesPerTriangle = 4,
+                        kBytesPerPosedVertex = sizeof(glm::vec3) * 2 + sizeof(glm::vec4);
+  std::size_t triangles = 0;
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
     if (!scene.inScene[i] || scene.nodes[i].mesh < 0) continue;
-    count += scene.meshes[static_cast<std::size_t>(scene.nodes[i].mesh)].indices.size() / 3;
+    const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.nodes[i].mesh)];
+    const bool deforms = scene.nodes[i].skin >= 0 || !mesh.targets.empty();
+    document.charge(mesh.indices.size() / 3 * kBytesPerTriangle, "/nodes");
+    if (deforms) document.charge(mesh.positions.size() * kBytesPerPosedVertex, "/nodes");
+    triangles += mesh.indices.size() / 3;
   }
-  return count;
+  return triangles;
 }
 
 }  // namespace
@@ -37,8 +45,9 @@ Scene loadGltf(const std::string& file, std::vector<std::uint8_t> bytes,
   readSkins(document, nodeOf, scene);
   readAnimations(document, nodeOf, scene);
   scene.materials.resize(document.model.materials.size() + 1);
+  const std::size_t triangles = chargeInstances(document, scene);
   scene.notices = std::move(document.notices);
-  if (countTriangles(scene) == 0) scene.notices.emplace_back("The file holds no triangles to draw.");
+  if (triangles == 0) scene.notices.emplace_back("The file holds no triangles to draw.");
   return scene;
 }
 
