@@ -2,9 +2,10 @@
 // viewpoint.
 //
 // Based on: C. Dyken, M. Reimers, "Real-time linear silhouette enhancement", 2004.
-// Differs in: segment counts come from a tolerance in pixels that holds under perspective (pixel_bound.h); a
-// triangle whose three edges stay straight and whose midpoint stays within the tolerance is passed through as
-// flat.
+// Differs in: where the silhouette crosses a triangle, the inside of the patch is refined too: a fan's chords
+// from the corners to the midpoint are straight and limit the outline. Segment counts come from a tolerance
+// in pixels that holds under perspective (pixel_bound.h); a triangle whose three edges stay straight and
+// whose midpoint stays within the tolerance is passed through as flat.
 //
 // Every edge has one record with its α, curve and segments, from which both its triangles take the same
 // points.
@@ -18,17 +19,25 @@
 #include "silhouette/edge_curves.h"
 #include "silhouette/method.h"
 #include "silhouette/patch.h"
+#include "silhouette/pattern.h"
 #include "silhouette/pixel_bound.h"
 #include "silhouette/silhouetteness.h"
+#include "silhouette/writer.h"
 
 namespace limn::silhouette {
 namespace {
 
-using glm::vec2;
 using glm::vec3;
 
 constexpr std::size_t kEdgesPerBlock = 4096;
 constexpr std::size_t kWordsPerBlock = 64;  // of 64 triangles each
+constexpr float kThird = 1.0f / 3.0f;
+
+// The inside of a patch blends in over a narrower range of facing than its edges: it matters only where the
+// silhouette crosses.
+constexpr float kInsideShare = 0.2f;
+constexpr std::uint32_t kMaxRows = 32;
+constexpr float kSideOverSpoke = 1.7320508f;  // lengths, in an equilateral triangle
 
 // An edge that bends in this view.
 struct SmoothEdge {
@@ -56,6 +65,14 @@ struct Scratch {
   std::vector<Share> shares;            // per block of triangles, then prefix sums
 };
 
+// How a triangle is drawn.
+struct Cut {
+  Patch patch;
+  Pattern pattern;
+  std::array<float, 3> alphas{};  // of the sides
+  float inside = 0;               // γ: the inside is the fan's at 0 and the patch's at 1
+};
+
 // One view's refinement; all it refers to outlives it.
 struct Pass {
   const Mesh& mesh;
@@ -70,6 +87,7 @@ struct Pass {
   RefinedStream& stream;
   RefineReport& report;
   PixelBound bound;
+  StreamWriter writer;
 
   void run();
   void classify();
@@ -85,7 +103,7 @@ struct Pass {
     return record == kNone ? nullptr : &scratch.smooth[record];
   }
   Patch patchOf(std::size_t triangle) const;
-  void writeVertex(std::uint32_t at, const vec3& position, const Origin& origin);
+  Cut cutOf(std::size_t triangle) const;
 };
 
 void mark(RefinedStream& stream, std::uint32_t triangle) {
@@ -182,27 +200,56 @@ Patch Pass::patchOf(std::size_t triangle) const {
   return patch;
 }
 
+// The fan's inside blends into that of the patch as the silhouette comes to cross the triangle. Its rows keep
+// what that adds within the tolerance, by its size at the middles of the spokes, so that rows come in where
+// they change little.
+Cut Pass::cutOf(std::size_t triangle) const {
+  Cut cut;
+  cut.patch = patchOf(triangle);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const SmoothEdge* smooth = recordOfSide(triangle, k);
+    if (smooth == nullptr) continue;
+    cut.pattern.sides[k] = smooth->segments;
+    cut.alphas[k] = smooth->alpha;
+  }
+  if (parameters.segments > 0) return cut;
+  const float beta = kInsideShare * parameters.beta;
+  cut.inside = silhouettenessOf(test.facingProduct(view, triangle), beta);
+  if (cut.inside <= 0.0f) return cut;
+  const Patch& patch = cut.patch;
+  const vec3 middle = patch.point(kThird, kThird, kThird);
+  float largest = 0.0f;
+  for (std::size_t k = 0; k < 3; ++k) {
+    vec3 weights(kThird / 2.0f);
+    weights[static_cast<int>(k)] = 2.0f * kThird;
+    const vec3 chord = 0.5f * (patch.corners[k] + middle);
+    largest = std::max(largest, bound.distance(chord, patch.point(weights.x, weights.y, weights.z)));
+  }
+  const float rows = std::sqrt(cut.inside * largest / parameters.tolerance);
+  if (rows <= 1.0f) return cut;
+  const float most = static_cast<float>(kMaxRows);
+  cut.pattern.rows = rows < most ? static_cast<std::uint32_t>(std::ceil(rows)) : kMaxRows;
+  cut.pattern.density = kSideOverSpoke * std::min(rows, most);
+  return cut;
+}
+
 // Which of a word's candidates are curved: the others lose their bit.
 Share Pass::decide(std::size_t word) {
   Share share;
   for (std::uint64_t rest = stream.replaced[word]; rest != 0; rest &= rest - 1) {
     const std::size_t triangle = 64 * word + static_cast<std::size_t>(std::countr_zero(rest));
-    std::uint32_t boundary = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const SmoothEdge* smooth = recordOfSide(triangle, k);
-      boundary += smooth != nullptr ? smooth->segments : 1;
-    }
-    constexpr float third = 1.0f / 3.0f;
-    const Patch patch = patchOf(triangle);
-    const vec3 flat = patch.flatPoint(third, third, third);
-    if (boundary == 3 &&
-        bound.distance(flat, flat + patch.offset(third, third, third)) <= parameters.tolerance) {
+    const Cut cut = cutOf(triangle);
+    const Pattern& pattern = cut.pattern;
+    const bool plain = pattern.sides == std::array<std::uint32_t, 3>{1, 1, 1} && pattern.rows == 1;
+    const vec3 flat = cut.patch.flatPoint(kThird, kThird, kThird);
+    const vec3 middle = cut.patch.point(kThird, kThird, kThird);
+    if (plain && bound.distance(flat, middle) <= parameters.tolerance) {
       stream.replaced[word] &= ~(std::uint64_t{1} << (triangle % 64));
       continue;
     }
     ++share.curved;
-    ++share.vertices;
-    share.triangles += boundary;
+    share.vertices += pattern.vertexCount();
+    share.triangles += pattern.triangleCount();
   }
   return share;
 }
@@ -242,24 +289,6 @@ void Pass::placeTriangles() {
   });
 }
 
-// The normal is the weighted mean of the corners'; where they cancel, the face's.
-void Pass::writeVertex(std::uint32_t at, const vec3& position, const Origin& origin) {
-  const std::uint32_t* corner = &mesh.indices[3 * std::size_t{origin.triangle}];
-  const vec2 w = origin.weights;
-  const vec3 normal = (1.0f - w.x - w.y) * mesh.normals[corner[0]] + w.x * mesh.normals[corner[1]] +
-                      w.y * mesh.normals[corner[2]];
-  stream.positions[at] = position;
-  stream.normals[at] = glm::dot(normal, normal) > 1e-12f ? normal : test.faceNormal(origin.triangle);
-  stream.origins[at] = origin;
-}
-
-// The weights of corners 1 and 2 at t along a side.
-vec2 sideWeights(std::uint32_t side, float t) {
-  if (side == 0) return {t, 0.0f};
-  if (side == 1) return {1.0f - t, t};
-  return {0.0f, 1.0f - t};
-}
-
 void Pass::emitEdge(const SmoothEdge& smooth) {
   const Edge& edge = topology.edges()[smooth.edge];
   const std::array<std::uint32_t, 2> ends = edgeVertices(mesh, edge)[0];
@@ -271,38 +300,43 @@ void Pass::emitEdge(const SmoothEdge& smooth) {
     for (std::uint32_t face = 0; face < (smooth.seam ? 2u : 1u); ++face) {
       const Side& side = edge.faces[face];
       const float along = edge.runsBack(face) ? 1.0f - t : t;
-      writeVertex(at + face * smooth.inner(), position, {side.triangle, sideWeights(side.side, along)});
+      std::array<float, 3> alphas{};
+      alphas[side.side] = smooth.alpha;
+      writer.vertex(at + face * smooth.inner(), position, {side.triangle, sideWeights(side.side, along)},
+                    alphas);
     }
   }
 }
 
-// A fan around the parametric midpoint.
 void Pass::emitTriangle(std::uint32_t triangle, std::uint32_t& vertex, std::uint32_t& face) {
+  const Cut cut = cutOf(triangle);
+  const std::uint32_t firstInner = vertex;
+  const vec3 middle = cut.patch.offset(kThird, kThird, kThird);
+  forVertices(cut.pattern, [&](std::uint32_t k, float s, float t) {
+    vec3 weights(s * kThird);
+    weights[static_cast<int>(k)] += (1.0f - s) * (1.0f - t);
+    weights[static_cast<int>(k == 2 ? 0 : k + 1)] += (1.0f - s) * t;
+    const vec3 fan = (1.0f - s) * curveOffset(cut.patch.sides[k], t) + s * middle;
+    const vec3 offset = fan + cut.inside * (cut.patch.offset(weights.x, weights.y, weights.z) - fan);
+    writer.vertex(vertex++, cut.patch.flatPoint(weights.x, weights.y, weights.z) + offset,
+                  {triangle, {weights.y, weights.z}}, cut.alphas);
+  });
+
   const auto firstNew = static_cast<std::uint32_t>(mesh.positions.size());
-  constexpr float third = 1.0f / 3.0f;
-  const std::uint32_t apex = vertex++;
-  writeVertex(apex, patchOf(triangle).point(third, third, third), {triangle, {third, third}});
-  const auto emit = [&](std::uint32_t a, std::uint32_t b) {
-    stream.indices[3 * std::size_t{face}] = firstNew + apex;
-    stream.indices[3 * std::size_t{face} + 1] = a;
-    stream.indices[3 * std::size_t{face} + 2] = b;
-    stream.sourceTriangles[face++] = triangle;
-  };
-  for (std::uint32_t k = 0; k < 3; ++k) {
+  const auto sidePoint = [&](std::uint32_t k, std::uint32_t i) {
     const std::uint32_t side = 3 * triangle + k;
-    std::uint32_t last = mesh.indices[side];
-    if (const SmoothEdge* smooth = recordOfSide(triangle, k); smooth != nullptr) {
-      const Edge& edge = topology.edges()[smooth->edge];
-      const std::uint32_t own = edge.faces[1].triangle == triangle && edge.faces[1].side == k ? 1 : 0;
-      const std::uint32_t first = firstNew + smooth->firstVertex + (smooth->seam ? own * smooth->inner() : 0);
-      for (std::uint32_t i = 0; i < smooth->inner(); ++i) {
-        const std::uint32_t next = first + (edge.runsBack(own) ? smooth->inner() - 1 - i : i);
-        emit(last, next);
-        last = next;
-      }
-    }
-    emit(last, mesh.indices[nextInTriangle(side)]);
-  }
+    if (i == 0) return mesh.indices[side];
+    if (i == cut.pattern.sides[k]) return mesh.indices[nextInTriangle(side)];
+    const SmoothEdge& smooth = *recordOfSide(triangle, k);
+    const Edge& edge = topology.edges()[smooth.edge];
+    const std::uint32_t own = edge.faces[1].triangle == triangle && edge.faces[1].side == k ? 1 : 0;
+    const std::uint32_t first = firstNew + smooth.firstVertex + (smooth.seam ? own * smooth.inner() : 0);
+    return first + (edge.runsBack(own) ? smooth.inner() - i : i - 1);
+  };
+  const auto inner = [&](std::uint32_t i) { return firstNew + firstInner + i; };
+  forTriangles(cut.pattern, sidePoint, inner, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    writer.triangle(face++, triangle, a, b, c);
+  });
 }
 
 class BlendedPatches final : public MethodState {
@@ -325,7 +359,7 @@ class BlendedPatches final : public MethodState {
       return;
     test_.prepare(mesh_, topology_, parameters, crew);
     if (fitted_.empty())
-      computeEdgeCurves(mesh_, topology_, style, crew, curves_);
+      computeEdgeCurves(mesh_, topology_, style, crew, robust_, curves_);
     else
       placeFittedCurves(crew);
     style_ = style;
@@ -338,8 +372,19 @@ class BlendedPatches final : public MethodState {
     Scratch& scratch = scratch_[crew.slot()];
     const Parameters wanted = whereFitted(parameters);
     if (scratch.recordOf.empty()) scratch.recordOf.assign(topology_.edges().size(), kNone);
-    Pass pass{mesh_,  topology_, test_,   curves_, centers_, view,
-              wanted, crew,      scratch, stream,  report,   PixelBound(view)};
+    Pass pass{mesh_,
+              topology_,
+              test_,
+              curves_,
+              centers_,
+              view,
+              wanted,
+              crew,
+              scratch,
+              stream,
+              report,
+              PixelBound(view),
+              StreamWriter(mesh_, parameters.shadingNormals, stream)};
     pass.run();
   }
 
@@ -383,6 +428,7 @@ class BlendedPatches final : public MethodState {
   FittedCurves fitted_;
   std::vector<Scratch> scratch_;
   EdgeTest test_;
+  RobustEnds robust_;
   std::vector<CurveOffsets> curves_;
   std::vector<vec3> centers_;  // what a fitted patch adds to b111; empty without fitted curves
   CurveStyle style_;

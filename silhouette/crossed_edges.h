@@ -15,6 +15,7 @@
 #include "silhouette/contour.h"
 #include "silhouette/pixel_bound.h"
 #include "silhouette/remesh.h"
+#include "silhouette/writer.h"
 
 namespace limn::silhouette {
 
@@ -62,12 +63,5 @@ void settle(CrossedEdge& edge, const EdgeCurve& curve, const std::array<bool, 2>
 
 /// The vertices between the ends, in order. Returns their number.
 std::size_t listVertices(const CrossedEdge& edge, EdgeVertexList& list);
-
-/// The weights of corners 1 and 2 at t along a side of a triangle.
-inline glm::vec2 sideWeights(std::uint32_t side, float t) {
-  if (side == 0) return {t, 0.0f};
-  if (side == 1) return {1.0f - t, t};
-  return {0.0f, 1.0f - t};
-}
 
 }  // namespace limn::silhouette

@@ -12,11 +12,6 @@ using glm::vec3;
 
 constexpr std::size_t kEdgesPerBlock = 2048;
 
-float smoothStep(float low, float high, float x) {
-  const float t = x <= low ? 0.0f : x >= high ? 1.0f : (x - low) / (high - low);
-  return t * t * (3.0f - 2.0f * t);
-}
-
 // Scales a projected tangent, whose length is |e| cos θ, to that of a circular arc, 2 |e| / (1 + cos θ): (L).
 // Steeper than 60 degrees the factor stays what it is there, so that the tangent vanishes with its projection
 // instead of keeping its length while losing its direction.
@@ -88,7 +83,8 @@ CurveOffsets edgeCurve(const vec3& pi, const vec3& pj, const EdgeEnd& atI, const
 }
 
 void computeEdgeCurves(const Mesh& mesh, const Topology& topology, const CurveStyle& style, const Crew& crew,
-                       std::vector<CurveOffsets>& curves) {
+                       RobustEnds& robust, std::vector<CurveOffsets>& curves) {
+  if (style.robust) robust.prepare(mesh, topology, crew);
   const std::vector<Edge>& edges = topology.edges();
   curves.resize(edges.size());
   crew.forBlocks(edges.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
@@ -99,6 +95,9 @@ void computeEdgeCurves(const Mesh& mesh, const Topology& topology, const CurveSt
       const EdgeVertices v = edgeVertices(mesh, edge);
       curves[e] = edgeCurve(mesh.positions[v[0][0]], mesh.positions[v[0][1]], edgeEnd(mesh, edge, v, 0),
                             edgeEnd(mesh, edge, v, 1), style);
+      if (!style.robust || edge.isFeature()) continue;
+      const std::array<float, 2> factors = robust.factors(edge);
+      for (std::size_t k = 0; k < 2; ++k) curves[e][k] *= factors[k];
     }
   });
 }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "silhouette/method.h"
+#include "silhouette/robust_ends.h"
 
 namespace limn::silhouette {
 
@@ -39,14 +40,25 @@ struct EdgeEnd {
 CurveOffsets edgeCurve(const glm::vec3& pi, const glm::vec3& pj, const EdgeEnd& atI, const EdgeEnd& atJ,
                        const CurveStyle& style);
 
-/// The curves of all edges; zero for non-manifold ones.
+/// The curves of all edges; zero for non-manifold ones. `robust` is prepared and scales the ends when the style says so.
 void computeEdgeCurves(const Mesh& mesh, const Topology& topology, const CurveStyle& style, const Crew& crew,
-                       std::vector<CurveOffsets>& curves);
+                       RobustEnds& robust, std::vector<CurveOffsets>& curves);
+
+/// 0 below `low`, 1 above `high`, and a smooth cubic between.
+inline float smoothStep(float low, float high, float x) {
+  const float t = x <= low ? 0.0f : x >= high ? 1.0f : (x - low) / (high - low);
+  return t * t * (3.0f - 2.0f * t);
+}
+
+/// What the curve adds to the straight edge at t.
+inline glm::vec3 curveOffset(const CurveOffsets& d, float t) {
+  const float s = 1.0f - t;
+  return 3.0f * s * t * (s * d[0] + t * d[1]);
+}
 
 /// The point at t of the cubic with inner offsets d from p to q.
 inline glm::vec3 curvePoint(const glm::vec3& p, const glm::vec3& q, const CurveOffsets& d, float t) {
-  const float s = 1.0f - t;
-  return s * p + t * q + 3.0f * s * t * (s * d[0] + t * d[1]);
+  return (1.0f - t) * p + t * q + curveOffset(d, t);
 }
 
 }  // namespace limn::silhouette

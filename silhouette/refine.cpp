@@ -11,18 +11,16 @@
 namespace limn::silhouette {
 namespace {
 
-// The methods, in the order of `Method`. A method to be written is a null pointer and refused at the door.
+// The methods, in the order of `Method`.
 constexpr std::array<std::unique_ptr<MethodState> (*)(const Source&), 4> kMethods = {
-    makeFlat, makeBlendedPatches, makeSilhouetteCurves, nullptr};
+    makeFlat, makeBlendedPatches, makeSilhouetteCurves, makePnTriangles};
 
 // Meshes below are refined by one thread each when there are several, meshes above by all threads, one by
 // one.
 constexpr std::size_t kLargeMesh = 20000;
 
 void requireValid(const Parameters& p, const Topology& topology) {
-  require(static_cast<std::size_t>(p.method) < kMethods.size() &&
-              kMethods[static_cast<std::size_t>(p.method)] != nullptr,
-          "unknown method");
+  require(static_cast<std::size_t>(p.method) < kMethods.size(), "unknown method");
   require(p.tolerance >= 0.0f, "tolerance must be at least 0");
   require(p.segments >= 0 && p.segments <= kMaxSegments, "segments must be 0 to kMaxSegments");
   require(p.beta >= 0.0f && std::isfinite(p.beta), "beta must be at least 0");

@@ -43,8 +43,8 @@ struct Parameters {
   float beta = 0.25f;                ///< constant β of (2), >= 0
   float wedgeDegrees = 0;            ///< > 0: β per edge from the wedge angle φ, (3)
   std::span<const float> edgeBetas;  ///< not empty: β of every edge of the topology, before the two above
-  Silhouetteness silhouetteness = Silhouetteness::kEdge;
-  Tangents tangents = Tangents::kProjected;
+  Silhouetteness silhouetteness = Silhouetteness::kContour;
+  Tangents tangents = Tangents::kGeodesic;
   bool robust = true;       ///< limited ends, methods/1 section 1.6
   bool features = true;     ///< feature edges smooth from every viewpoint
   bool boundaries = false;  ///< boundary edges likewise

@@ -528,7 +528,8 @@ class SilhouetteCurves final : public MethodState {
     const Style style{parameters.robust, parameters.features, parameters.boundaries};
     if (isPrepared_ && style == style_) return;
     const std::vector<Edge>& edges = topology_.edges();
-    computeEdgeCurves(mesh_, topology_, {Tangents::kCircular, parameters.robust}, crew, prepared_.curves);
+    computeEdgeCurves(mesh_, topology_, {Tangents::kCircular, parameters.robust}, crew, robust_,
+                      prepared_.curves);
     computeFeatureCurves(mesh_, topology_, crew, prepared_.curves);
     prepared_.vertices.resize(edges.size());
     prepared_.always.assign(edges.size(), 0);
@@ -567,6 +568,7 @@ class SilhouetteCurves final : public MethodState {
   const Topology& topology_;
   std::vector<Scratch> scratch_;
   Prepared prepared_;
+  RobustEnds robust_;
   Style style_;
   bool isPrepared_ = false;
 };

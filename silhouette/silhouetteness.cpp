@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "raster/base/elementary.h"
+#include "silhouette/face_normal.h"
 
 namespace limn::silhouette {
 namespace {
@@ -13,15 +14,6 @@ using glm::dot;
 using glm::vec3;
 
 constexpr std::size_t kItemsPerBlock = 4096;
-
-// Double precision: the corners of a needle differ in their last digits only.
-vec3 unitNormal(const Mesh& mesh, std::size_t triangle) {
-  const std::uint32_t* corner = &mesh.indices[3 * triangle];
-  const glm::dvec3 a(mesh.positions[corner[0]]), b(mesh.positions[corner[1]]), c(mesh.positions[corner[2]]);
-  const glm::dvec3 normal = glm::cross(b - a, c - a);
-  const double length = glm::length(normal);
-  return length > 0.0 ? vec3(normal / length) : vec3(0.0f);
-}
 
 // From a point towards the eye, not unit.
 vec3 toEye(const View& view, const vec3& point) {
@@ -39,12 +31,7 @@ void EdgeTest::prepare(const Mesh& mesh, const Topology& topology, const Paramet
                        const Crew& crew) {
   mesh_ = mesh;
   topology_ = &topology;
-  faceNormals_.resize(mesh.triangleCount());
-  crew.forBlocks(faceNormals_.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t)
-      faceNormals_[t] = topology.isDegenerate(t) ? vec3(0.0f) : unitNormal(mesh, t);
-  });
-
+  computeFaceNormals(mesh, topology, crew, faceNormals_);
   betas_.assign(parameters.edgeBetas.begin(), parameters.edgeBetas.end());
   if (!betas_.empty() || parameters.wedgeDegrees == 0.0f) return;
   const SinCos phi = sinCosDegrees(parameters.wedgeDegrees);
@@ -69,18 +56,27 @@ float EdgeTest::byEdge(const View& view, const Edge& edge) const {
   return length2 > 0.0f ? product / length2 : 0.0f;
 }
 
+// Takes the facings of a triangle's corners into [low, high].
+void EdgeTest::widen(const View& view, std::size_t triangle, float& low, float& high) const {
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const std::uint32_t vertex = mesh_.indices[3 * triangle + corner];
+    const vec3 v = toEye(view, mesh_.positions[vertex]);
+    const float length2 = dot(v, v);
+    const float facing = length2 > 0.0f ? dot(v, mesh_.normals[vertex]) / std::sqrt(length2) : 0.0f;
+    low = std::min(low, facing);
+    high = std::max(high, facing);
+  }
+}
+
 float EdgeTest::byContour(const View& view, const Edge& edge) const {
   float low = 2.0f, high = -2.0f;
-  for (const Side& face : edge.faces) {
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::uint32_t vertex = mesh_.indices[3 * std::size_t{face.triangle} + corner];
-      const vec3 v = toEye(view, mesh_.positions[vertex]);
-      const float length2 = dot(v, v);
-      const float facing = length2 > 0.0f ? dot(v, mesh_.normals[vertex]) / std::sqrt(length2) : 0.0f;
-      low = std::min(low, facing);
-      high = std::max(high, facing);
-    }
-  }
+  for (const Side& face : edge.faces) widen(view, face.triangle, low, high);
+  return low * high;
+}
+
+float EdgeTest::facingProduct(const View& view, std::size_t triangle) const {
+  float low = 2.0f, high = -2.0f;
+  widen(view, triangle, low, high);
   return low * high;
 }
 

@@ -1,12 +1,14 @@
 #include "shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <random>
-#include <tuple>
+#include <utility>
 
 namespace limn::silhouette::test {
 namespace {
@@ -211,20 +213,23 @@ std::vector<vec3> drawnTriangles(const Mesh& mesh, const RefinedStream& stream) 
 }
 
 std::size_t openSides(const std::vector<vec3>& triangles) {
-  using Key = std::tuple<float, float, float, float, float, float>;
-  std::map<Key, int> balance;
-  const auto key = [](const vec3& a, const vec3& b) { return Key{a.x, a.y, a.z, b.x, b.y, b.z}; };
+  // A side and its opposite get the same key, with +1 and -1.
+  using Key = std::array<float, 6>;
+  std::vector<std::pair<Key, int>> sides;
   for (std::size_t t = 0; t < triangles.size(); t += 3) {
     for (std::size_t k = 0; k < 3; ++k) {
       const vec3 &a = triangles[t + k], &b = triangles[t + (k + 1) % 3];
-      if (a == b) continue;
-      ++balance[key(a, b)];
-      --balance[key(b, a)];
+      const Key there{a.x, a.y, a.z, b.x, b.y, b.z}, back{b.x, b.y, b.z, a.x, a.y, a.z};
+      if (a != b) sides.emplace_back(std::min(there, back), there < back ? 1 : -1);
     }
   }
+  std::sort(sides.begin(), sides.end());
   std::size_t open = 0;
-  for (const auto& [side, count] : balance)
-    if (count > 0) open += static_cast<std::size_t>(count);
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    int balance = 0;
+    for (; end < sides.size() && sides[end].first == sides[begin].first; ++end) balance += sides[end].second;
+    open += static_cast<std::size_t>(std::abs(balance));
+  }
   return open;
 }
 

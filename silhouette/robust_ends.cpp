@@ -1,0 +1,115 @@
+#include "silhouette/robust_ends.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "silhouette/edge_curves.h"
+#include "silhouette/face_normal.h"
+
+namespace limn::silhouette {
+namespace {
+
+using glm::cross;
+using glm::dot;
+using glm::vec3;
+
+constexpr float kLimit = 1.25f;        // k
+constexpr float kWitnessNone = -0.1f;  // shares of the bulge that the normals ask for
+constexpr float kWitnessFull = 0.4f;
+constexpr float kStencilError = 0.03f;      // τ, in edge lengths per radian
+constexpr float kStencilErrorAngle = 0.6f;  // radians of dihedral angle that count
+constexpr float kTiltOnset = 0.35f;
+constexpr float kTiltWidth = 0.25f;
+constexpr float kOnsetPerDeviation = 4.0f;
+constexpr float kDeviationMost = 0.2f;
+
+// The angle between two vectors within 7e-5 (Abramowitz & Stegun 4.4.45): a weight, not a measurement.
+float angleBetween(const vec3& a, const vec3& b) {
+  const float lengths = std::sqrt(dot(a, a) * dot(b, b));
+  if (!(lengths > 0.0f)) return 0.0f;
+  const float x = std::min(1.0f, std::fabs(dot(a, b)) / lengths);
+  const float acute =
+      std::sqrt(1.0f - x) * (1.5707288f + x * (-0.2121144f + x * (0.0742610f - x * 0.0187293f)));
+  return dot(a, b) < 0.0f ? 3.1415927f - acute : acute;
+}
+
+vec3 unit(const vec3& v) {
+  const float length2 = dot(v, v);
+  return length2 > 0.0f ? v / std::sqrt(length2) : vec3(0.0f);
+}
+
+std::uint32_t opposite(const Mesh& mesh, const Side& side) {
+  return mesh.indices[3 * std::size_t{side.triangle} + (side.side + 2) % 3];
+}
+
+}  // namespace
+
+void RobustEnds::prepare(const Mesh& mesh, const Topology& topology, const Crew& crew) {
+  mesh_ = mesh;
+  topology_ = &topology;
+  computeFaceNormals(mesh, topology, crew, faceNormals_);
+  ringNormals_.assign(topology.pointCount(), vec3(0.0f));
+  for (std::size_t side = 0; side < mesh.indices.size(); ++side) {
+    const std::size_t first = side - side % 3;
+    const vec3& p = mesh.positions[mesh.indices[side]];
+    const vec3 next = mesh.positions[mesh.indices[first + (side + 1) % 3]] - p;
+    const vec3 before = mesh.positions[mesh.indices[first + (side + 2) % 3]] - p;
+    ringNormals_[topology.points()[mesh.indices[side]]] +=
+        angleBetween(next, before) * faceNormals_[side / 3];
+  }
+}
+
+// Sine of the angle between a vertex's normal and that of its ring of faces.
+float RobustEnds::deviation(std::uint32_t vertex) const {
+  const vec3 product = cross(mesh_.normals[vertex], unit(ringNormals_[topology_->points()[vertex]]));
+  return std::sqrt(dot(product, product));
+}
+
+// Where the butterfly scheme puts the edge's midpoint, less the midpoint. False where its stencil meets a
+// boundary or a feature, beyond which positions tell nothing about this side.
+bool RobustEnds::butterflyOffset(const Edge& edge, const vec3& start, vec3& offset) const {
+  offset = vec3(0.0f);
+  for (const Side& face : edge.faces) {
+    if (face.triangle == kNone) return false;
+    offset += 0.125f * (mesh_.positions[opposite(mesh_, face)] - start);
+    for (std::uint32_t turn = 1; turn < 3; ++turn) {
+      const std::uint32_t own = 3 * face.triangle + (face.side + turn) % 3;
+      const Edge& wing = topology_->edges()[topology_->sideEdges()[own]];
+      if (wing.boundary || wing.isFeature()) return false;
+      const bool first = wing.faces[0].triangle == face.triangle && wing.faces[0].side == own % 3;
+      offset -= 0.0625f * (mesh_.positions[opposite(mesh_, wing.faces[first ? 1 : 0])] - start);
+    }
+  }
+  return true;
+}
+
+std::array<float, 2> RobustEnds::factors(const Edge& edge) const {
+  const std::array<std::uint32_t, 2> ends = edgeVertices(mesh_, edge)[0];
+  const vec3 &p = mesh_.positions[ends[0]], &ni = mesh_.normals[ends[0]], &nj = mesh_.normals[ends[1]];
+  const vec3 e = mesh_.positions[ends[1]] - p;
+  const float length = std::sqrt(dot(e, e));
+  if (!(length > 0.0f)) return {0.0f, 0.0f};
+  const float hi = -dot(e, ni) / length, hj = dot(e, nj) / length;
+  const auto limited = [](float own, float other) {
+    return own == 0.0f ? 1.0f : std::clamp(kLimit * other / own, 0.0f, 1.0f);
+  };
+
+  const float deviating = std::min(0.5f * (deviation(ends[0]) + deviation(ends[1])), kDeviationMost);
+  const float onset = kTiltOnset + kOnsetPerDeviation * deviating;
+  float common = 1.0f - smoothStep(onset, onset + kTiltWidth, std::max(std::fabs(hi), std::fabs(hj)));
+
+  vec3 offset;
+  const float bulge = (hi + hj) / 8.0f;
+  if (bulge != 0.0f && butterflyOffset(edge, p, offset)) {
+    const vec3 &ns = faceNormals_[edge.faces[0].triangle], &nt = faceNormals_[edge.faces[1].triangle];
+    const vec3 sum = unit(ni + nj) + 0.5f * (ns + nt);
+    const vec3 up = unit(sum - dot(sum, e) / (length * length) * e);
+    const float seen = dot(offset, up) / length * (bulge > 0.0f ? 1.0f : -1.0f);
+    const float granted = kStencilError * std::min(angleBetween(ns, nt), kStencilErrorAngle);
+    common *= smoothStep(kWitnessNone, kWitnessFull, (seen + granted) / std::fabs(bulge));
+  }
+  return {common * limited(hi, hj), common * limited(hj, hi)};
+}
+
+}  // namespace limn::silhouette
