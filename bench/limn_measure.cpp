@@ -31,9 +31,18 @@ int run(int argc, char** argv) {
       app.add_subcommand("stability", "kernels against exact twins, and the extremes");
   stability->add_option("--seed", options.seed, "of the inputs")->check(CLI::NonNegativeNumber);
   stability->add_flag("--quick", options.quick, "fewer cases");
+  addCsv(*stability, options);
+  CLI::App* const trade =
+      app.add_subcommand("trade", "accuracy against cost; what no other choice beats is marked");
+  limn::measure::addOptions(*trade, options);
+  trade->add_option("--plot", options.plotFolder, "folder for trade-*.dat, which bench/trade.gp draws");
   CLI11_PARSE(app, argc, argv);
   if (coherence->parsed()) return runCoherence(options);
   if (stability->parsed()) return runStability(options);
+  if (trade->parsed()) {
+    options.tolerancesGiven = trade->count("--tolerance") > 0;
+    return runTrade(options);
+  }
   return runOutline(options);
 }
 

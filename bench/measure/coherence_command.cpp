@@ -37,7 +37,7 @@ int runCoherence(const Options& options) {
       }
     }
   });
-  print(rows);
+  print(rows, options);
   return 0;
 }
 

@@ -21,6 +21,7 @@ struct Options {
   std::string modelsFolder = "../shared/models";
   std::vector<std::string> methods;
   std::vector<double> tolerances{0.25};
+  bool tolerancesGiven = false;
   int views = 0;  ///< 0: the standard 26, or --seed with 26
   std::int64_t seed = -1;
   int size = 1024;
@@ -28,12 +29,15 @@ struct Options {
   bool quick = false;
   bool perView = false;
   std::string dumpFolder;
+  std::string plotFolder;  ///< trade: tables for gnuplot
+  std::string csvFile;
   double arc = 6.0;                     ///< coherence: degrees of camera path
   std::vector<double> steps{0.4, 0.1};  ///< coherence: degrees per frame
   silhouette::Parameters parameters;    ///< but for method and tolerance
 };
 
 void addOptions(CLI::App& command, Options& options);
+void addCsv(CLI::App& command, Options& options);
 
 /// METHOD, patches:TANGENTS, curves, METHOD:SEGMENTS; each with each tolerance (once where the segments are
 /// fixed, and once for flat). Throws std::invalid_argument.
@@ -48,11 +52,12 @@ int threadsOf(const Options& options);
 /// Rounded for reading: five decimals.
 double rounded(double value);
 
-/// The rows as a JSON array, one per line.
-void print(const std::vector<Json>& rows);
+/// The rows as a JSON array, one per line, and as CSV where the options want it: a column for each key of the first row.
+void print(const std::vector<Json>& rows, const Options& options);
 
 int runOutline(const Options& options);
 int runCoherence(const Options& options);
 int runStability(const Options& options);
+int runTrade(const Options& options);
 
 }  // namespace limn::measure

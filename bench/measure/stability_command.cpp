@@ -30,7 +30,7 @@ int runStability(const Options& options) {
                       {"outside", check.outside}});
     }
   }
-  print(rows);
+  print(rows, options);
   return 0;
 }
 
