@@ -10,6 +10,7 @@ enum ExitStatus { kDone = 0, kFault = 1, kUsage = 2, kBadInput = 3, kNotWritten 
 int render(const RenderOptions& options);
 int info(const InfoOptions& options);
 int compare(const CompareOptions& options);
+int verify(const VerifyOptions& options);
 int models();
 
 }  // namespace limn::program

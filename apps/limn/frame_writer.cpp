@@ -31,57 +31,93 @@ const std::string* find(const scene::TextChunks& texts, const std::string& keywo
   return found == texts.end() ? nullptr : &found->second;
 }
 
+scene::TextChunks textsOf(const std::string& job, const std::string& hash) {
+  return {{"Software", std::string("limn ") + LIMN_VERSION}, {kJobKeyword, job}, {kPixelsKeyword, hash}};
+}
+
 }  // namespace
 
-FrameWriter::FrameWriter(const Job& job, const RenderOptions& options, const OutputPattern* pattern,
-                         int frames)
-    : job_(job), options_(options), pattern_(pattern) {
-  if (options.manifest) hashes_.resize(static_cast<std::size_t>(frames));
-}
-
-scene::TextChunks FrameWriter::texts(int frame, const std::string& hash) const {
-  return {{"Software", std::string("limn ") + LIMN_VERSION},
-          {kJobKeyword, job_.text(frame)},
-          {kPixelsKeyword, hash}};
-}
-
-bool FrameWriter::isThere(int frame, std::string& hash) const {
+FrameFile inspectFrame(const std::string& path, const std::string& job, std::string& hash) {
   scene::PngSummary summary;
-  if (pattern_ == nullptr || !scene::inspectPng(pattern_->path(frame), summary)) return false;
-  const std::string* job = find(summary.texts, kJobKeyword);
+  if (!scene::inspectPng(path, summary)) return FrameFile::kMissing;
+  const std::string* said = find(summary.texts, kJobKeyword);
   const std::string* pixels = find(summary.texts, kPixelsKeyword);
-  if (job == nullptr || pixels == nullptr || *job != job_.text(frame)) return false;
+  if (said == nullptr || pixels == nullptr || *said != job) return FrameFile::kOtherJob;
   hash = *pixels;
+  return FrameFile::kWhole;
+}
+
+FrameWriter::FrameWriter(const Job& job, const RenderOptions& options, const OutputPattern* pattern,
+                         int frames, std::size_t triangles)
+    : job_(job), options_(options), pattern_(pattern), triangles_(triangles) {
+  if (options.manifest) records_.resize(static_cast<std::size_t>(frames));
+}
+
+bool FrameWriter::isThere(Picture& picture) const {
+  if (pattern_ == nullptr) return false;
+  const std::string path = pattern_->path(picture.frame);
+  if (inspectFrame(path, job_.text(picture.frame), picture.hash) != FrameFile::kWhole) return false;
+  picture.aovHashes.resize(options_.aovs.size());
+  for (std::size_t i = 0; i < options_.aovs.size(); ++i) {
+    const Aov aov = options_.aovs[i];
+    if (inspectFrame(besidePath(path, aovName(aov)), aovJob(picture.frame, aov), picture.aovHashes[i]) !=
+        FrameFile::kWhole)
+      return false;
+  }
   return true;
 }
 
-void FrameWriter::write(const Picture& picture, const std::string& hash, WriterTimes& times) {
+void FrameWriter::writePicture(const Picture& picture, WriterTimes& times) {
   Lap lap;
   std::vector<std::uint8_t> png;
-  if (!options_.rgba) png = scene::encodePng(picture.image, texts(picture.frame, hash), options_.compression);
+  if (!options_.rgba)
+    png = scene::encodePng(picture.image, textsOf(job_.text(picture.frame), picture.hash),
+                           options_.compression);
   const std::vector<std::uint8_t>& bytes = options_.rgba ? picture.image.rgba : png;
-  times.encodeMs = lap();
+  times.encodeMs += lap();
   if (pattern_->isStandardOutput())
     standardOutput_.run(picture.position, [&] {
       scene::writeAll(STDOUT_FILENO, "standard output", bytes.data(), bytes.size());
     });
   else
     scene::writeFileWhole(pattern_->path(picture.frame), bytes.data(), bytes.size());
-  times.writeMs = lap();
-  times.bytes = bytes.size();
+  times.writeMs += lap();
+  times.bytes += bytes.size();
+}
+
+void FrameWriter::writeAov(Picture& picture, Aov aov, WriterTimes& times) {
+  Lap lap;
+  scene::TextChunks explained;
+  const scene::Image16 image =
+      aovImage(aov, picture.planes, picture.image, picture.projection, triangles_, explained);
+  picture.aovHashes.push_back(scene::hashBytes(image.samples.data(), 2 * image.samples.size()));
+  scene::TextChunks texts = textsOf(aovJob(picture.frame, aov), picture.aovHashes.back());
+  texts.insert(texts.end(), explained.begin(), explained.end());
+  const std::vector<std::uint8_t> png = scene::encodePng16(image, texts, options_.compression);
+  times.encodeMs += lap();
+  scene::writeFileWhole(besidePath(pattern_->path(picture.frame), aovName(aov)), png.data(), png.size());
+  times.writeMs += lap();
+  times.bytes += png.size();
 }
 
 void FrameWriter::finish(Picture& picture) {
   WriterTimes times;
-  Lap lap;
   const bool writes = pattern_ != nullptr && !picture.existing;
-  const bool wantsHash = options_.hash || options_.manifest || (writes && !options_.rgba);
-  const std::string hash = picture.existing ? picture.hash : wantsHash ? scene::pixelHash(picture.image) : "";
-  times.hashMs = lap();
-  if (writes) write(picture, hash, times);
+  if (!picture.existing) {
+    Lap lap;
+    const bool wantsHash = options_.hash || options_.manifest || (writes && !options_.rgba);
+    picture.hash = wantsHash ? scene::pixelHash(picture.image) : "";
+    picture.aovHashes.clear();
+    times.hashMs = lap();
+  }
+  // The picture itself comes last: where it is whole, so are its companions.
+  if (writes) {
+    for (const Aov aov : options_.aovs) writeAov(picture, aov, times);
+    writePicture(picture, times);
+  }
   if (options_.hash)
     standardOutput_.run(picture.position, [&] {
-      const std::string line = std::to_string(picture.frame) + " " + hash + "\n";
+      const std::string line = std::to_string(picture.frame) + " " + picture.hash + "\n";
       scene::writeAll(STDOUT_FILENO, "standard output", line.data(), line.size());
     });
 
@@ -90,7 +126,10 @@ void FrameWriter::finish(Picture& picture) {
   times_.encodeMs += times.encodeMs;
   times_.writeMs += times.writeMs;
   times_.bytes += times.bytes;
-  if (!hashes_.empty()) hashes_[static_cast<std::size_t>(picture.position)] = hash;
+  if (records_.empty()) return;
+  ManifestFrame& record = records_[static_cast<std::size_t>(picture.position)];
+  record = {picture.frame, relativeTo(*options_.manifest, pattern_->path(picture.frame)), picture.hash,
+            picture.aovHashes};
 }
 
 }  // namespace limn::program

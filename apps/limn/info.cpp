@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/limn/commands.h"
+#include "apps/limn/job.h"
 #include "apps/limn/values.h"
 #include "apps/scene/load.h"
 #include "apps/scene/pose.h"
@@ -76,22 +77,20 @@ Json boundsJson(const scene::Scene& scene) {
   return {{"center", {sphere.center.x, sphere.center.y, sphere.center.z}}, {"radius", sphere.radius}};
 }
 
-/// Triangles as drawn: a mesh counts once per node of the scene that holds it.
-std::size_t drawnTriangles(const scene::Scene& scene, std::size_t& instances) {
-  std::size_t triangles = 0;
-  for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-    if (!scene.inScene[i] || scene.nodes[i].mesh < 0) continue;
-    ++instances;
-    triangles += scene.meshes[static_cast<std::size_t>(scene.nodes[i].mesh)].indices.size() / 3;
-  }
-  return triangles;
+std::size_t countInstances(const scene::Scene& scene) {
+  std::size_t instances = 0;
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i)
+    if (scene.inScene[i] && scene.nodes[i].mesh >= 0) ++instances;
+  return instances;
 }
 
 Json sceneJson(const std::string& model, const scene::Scene& scene) {
-  std::size_t instances = 0;
-  const std::size_t triangles = drawnTriangles(scene, instances);
-  Json json = {{"model", model},         {"scene", scene.name},          {"nodes", scene.nodes.size()},
-               {"instances", instances}, {"triangles_drawn", triangles}, {"bounds", boundsJson(scene)}};
+  Json json = {{"model", model},
+               {"scene", scene.name},
+               {"nodes", scene.nodes.size()},
+               {"instances", countInstances(scene)},
+               {"triangles_drawn", drawnTriangles(scene)},
+               {"bounds", boundsJson(scene)}};
   json["meshes"] = Json::array();
   for (const scene::Mesh& mesh : scene.meshes) json["meshes"].push_back(meshJson(mesh));
   json["materials"] = Json::array();

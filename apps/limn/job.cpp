@@ -209,4 +209,12 @@ std::string Job::describe() const {
   return text + " --background " + shellWord(colorText(o.settings.background));
 }
 
+std::size_t drawnTriangles(const scene::Scene& scene) {
+  std::size_t triangles = 0;
+  for (std::size_t i = 0; i < scene.nodes.size(); ++i)
+    if (scene.inScene[i] && scene.nodes[i].mesh >= 0)
+      triangles += scene.meshes[static_cast<std::size_t>(scene.nodes[i].mesh)].indices.size() / 3;
+  return triangles;
+}
+
 }  // namespace limn::program

@@ -70,4 +70,7 @@ class Job {
   std::string text_;
 };
 
+/// Triangles as drawn: a mesh counts once per node of the scene that holds it.
+std::size_t drawnTriangles(const scene::Scene& scene);
+
 }  // namespace limn::program

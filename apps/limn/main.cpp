@@ -24,6 +24,8 @@ int run(int count, const char* const* arguments) {
       return info(line.info);
     case Command::kCompare:
       return compare(line.compare);
+    case Command::kVerify:
+      return verify(line.verify);
     case Command::kModels:
       return models();
     case Command::kPrinted:

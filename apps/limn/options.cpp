@@ -220,6 +220,8 @@ void addOutputOptions(CLI::App& app, RenderOptions& o) {
              [&o](const std::string& text) {
                o.compression = static_cast<int>(parseInteger(text, 0, scene::kHighestCompression));
              });
+  output.add("--aov", "depth,normal,id", "16-bit pictures of these beside each frame, like 0001.depth.png",
+             "none", [&o](const std::string& text) { o.aovs = parseAovs(text); });
   output.addFlag("--hash", "print a line per frame: its number and the XXH3-128 of its RGBA8 rows", o.hash);
   output.add("--stats", "FILE.json", "write counts, times by stage and memory", "",
              [&o](const std::string& text) { o.statistics = text; });
@@ -295,6 +297,12 @@ CommandLine readCommandLine(int count, const char* const* arguments) {
   compare->add_option("B", line.compare.second, "another")->required()->type_name("");
   compare->add_option("-o,--output", line.compare.output, "write a picture of the differences")
       ->type_name("DIFF.png");
+  CLI::App* verify =
+      app.add_subcommand("verify", "frames of a run, cut into shards or not: all there, whole, of one job");
+  verify->add_option("MANIFEST", line.verify.manifests, "files that `limn render --manifest` wrote")
+      ->required()
+      ->type_name("");
+  line.verify.threads = line.render.threads;
   const CLI::App* models = app.add_subcommand("models", "the built-in models");
   app.footer(R"(`limn COMMAND --help` tells all about a command.
 
@@ -322,7 +330,7 @@ written; 5 images differ; 128+n ended by signal n.
   } catch (const CLI::RequiredError& error) {
     if (!app.get_subcommands().empty()) throw UsageError(std::string(error.what()) + "; see limn --help");
     if (!app.remaining().empty()) refuseExtras(app);
-    throw UsageError("name a command: render, info, compare or models; limn --help tells more");
+    throw UsageError("name a command: render, info, compare, verify or models; limn --help tells more");
   } catch (const CLI::ArgumentMismatch& error) {
     const std::string text = error.what(), name = text.substr(0, text.find(':'));
     throw UsageError(
@@ -332,12 +340,11 @@ written; 5 images differ; 128+n ended by signal n.
     throw UsageError(error.what());
   }
   using Command = CommandLine::Command;
-  const auto is = [&](const CLI::App* command) { return command->parsed(); };
-  line.command = is(render)    ? Command::kRender
-                 : is(info)    ? Command::kInfo
-                 : is(compare) ? Command::kCompare
-                               : Command::kModels;
-  static_cast<void>(models);
+  if (render->parsed()) line.command = Command::kRender;
+  if (info->parsed()) line.command = Command::kInfo;
+  if (compare->parsed()) line.command = Command::kCompare;
+  if (verify->parsed()) line.command = Command::kVerify;
+  if (models->parsed()) line.command = Command::kModels;
   return line;
 }
 

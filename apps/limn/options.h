@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/limn/aov.h"
 #include "apps/limn/job.h"
 
 namespace limn::program {
@@ -16,6 +17,7 @@ struct RenderOptions {
   std::optional<std::string> output;
   bool rgba = false;  ///< raw rows instead of PNG
   int compression = 1;
+  std::vector<Aov> aovs;
   int threads = 1;
   bool hash = false;
   std::optional<std::string> statistics, manifest;
@@ -33,12 +35,18 @@ struct CompareOptions {
   std::optional<std::string> output;
 };
 
+struct VerifyOptions {
+  std::vector<std::string> manifests;
+  int threads = 1;
+};
+
 struct CommandLine {
-  enum class Command { kRender, kInfo, kCompare, kModels, kPrinted };
+  enum class Command { kRender, kInfo, kCompare, kVerify, kModels, kPrinted };
   Command command = Command::kPrinted;  ///< kPrinted: help or version, already on standard output
   RenderOptions render;
   InfoOptions info;
   CompareOptions compare;
+  VerifyOptions verify;
 };
 
 /// Throws UsageError.

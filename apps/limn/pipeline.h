@@ -26,8 +26,11 @@ struct Picture {
   int position = 0;       ///< in the list of frames that this run draws, from 0
   int frame = 1;          ///< number in the job
   bool existing = false;  ///< not drawn: its file is whole already
-  std::string hash;       ///< of an existing one
+  std::string hash;       ///< of the pixels
+  std::vector<std::string> aovHashes;
   scene::Image image;
+  scene::Planes planes;
+  Projection projection;
 };
 
 class Pipeline {

@@ -34,7 +34,7 @@ class Selection {
                                        : std::to_string(jobFrames) + " frames"));
   }
 
-  int listed() const { return list_.count(); }
+  const FrameList& list() const { return list_; }
   int count() const { return (list_.count() - shard_.first + shard_.second) / shard_.second; }
   int frame(int position) const { return list_.at(shard_.first - 1 + position * shard_.second); }
 
@@ -49,7 +49,7 @@ void checkOutput(const RenderOptions& o) {
     if (!o.hash && !o.dryRun && !o.statistics)
       throw UsageError("no output; name one with -o, like -o picture.png");
     if (o.manifest || o.skipExisting)
-      throw UsageError("--manifest and --skip-existing need files; name them with -o");
+      throw UsageError("--manifest, --skip-existing and --aov need files; name them with -o");
     return;
   }
   if (*o.output == "-") {
@@ -148,6 +148,25 @@ void listFrames(const Selection& selection, const OutputPattern* pattern) {
   std::cout << std::flush;
 }
 
+void writeText(const std::string& path, const std::string& text) {
+  scene::makeDirectoriesOf(path);
+  scene::writeFileWhole(path, text.data(), text.size());
+}
+
+Manifest manifestOf(const Job& job, const Selection& selection, const RenderOptions& options,
+                    const FrameWriter& writer) {
+  Manifest manifest;
+  manifest.job = job.text();
+  manifest.list = selection.list().text();
+  manifest.shard = options.shard;
+  manifest.rgba = options.rgba;
+  manifest.width = options.job.width;
+  manifest.height = options.job.height;
+  for (const Aov aov : options.aovs) manifest.aovs.push_back(aovName(aov));
+  manifest.frames = writer.records();
+  return manifest;
+}
+
 /// All directories of the run's files, now: one that is lost later on is a fault.
 void makeDirectories(const OutputPattern& pattern, const Selection& selection) {
   std::string last;
@@ -174,15 +193,17 @@ void drawFrames(const scene::Scene& scene, const Job& job, const Selection& sele
     std::unique_ptr<Picture> picture = pipeline.acquire();
     picture->position = position;
     picture->frame = selection.frame(position);
-    picture->existing = options.skipExisting && writer.isThere(picture->frame, picture->hash);
+    picture->existing = options.skipExisting && writer.isThere(*picture);
     if (picture->existing) {
       ++totals.skipped;
     } else {
       const Clock::time_point start = Clock::now();
       job.pose(picture->frame, pose);
       totals.poseMs += millisecondsSince(start);
-      drawer.draw(pose, job.camera(picture->frame, pose), job.settings(picture->frame), picture->image,
-                  &statistics);
+      const scene::CameraView camera = job.camera(picture->frame, pose);
+      picture->projection = camera.projection;
+      wantPlanes(options.aovs, picture->planes);
+      drawer.draw(pose, camera, job.settings(picture->frame), picture->image, &statistics, &picture->planes);
       totals.add(statistics);
     }
     pipeline.submit(std::move(picture));
@@ -216,8 +237,8 @@ int render(const RenderOptions& options) {
     throw UsageError("the camera cannot be used: " + reason(error));
   }
   const Selection selection(options, job->frameCount());
-  if (pattern && !pattern->hasNumber() && !pattern->isStandardOutput() && selection.listed() > 1)
-    throw UsageError(std::to_string(selection.listed()) + " frames do not fit into one file '" +
+  if (pattern && !pattern->hasNumber() && !pattern->isStandardOutput() && selection.list().count() > 1)
+    throw UsageError(std::to_string(selection.list().count()) + " frames do not fit into one file '" +
                      *options.output + "'; give a pattern like frames/%04d.png");
   totals.prepareMs = millisecondsSince(start);
 
@@ -227,16 +248,14 @@ int render(const RenderOptions& options) {
   }
   const bool writes = pattern && !options.dryRun;
   if (writes && !pattern->isStandardOutput()) makeDirectories(*pattern, selection);
-  FrameWriter writer(*job, options, writes ? &*pattern : nullptr, selection.count());
+  FrameWriter writer(*job, options, writes ? &*pattern : nullptr, selection.count(), drawnTriangles(scene));
   start = Clock::now();
   drawFrames(scene, *job, selection, options, writer, totals);
   totals.totalMs = millisecondsSince(start);
 
-  if (options.statistics) {
-    const std::string json = statisticsJson(totals, writer.times(), options);
-    scene::makeDirectoriesOf(*options.statistics);
-    scene::writeFileWhole(*options.statistics, json.data(), json.size());
-  }
+  if (options.statistics) writeText(*options.statistics, statisticsJson(totals, writer.times(), options));
+  if (options.manifest && writes)
+    writeText(*options.manifest, manifestOf(*job, selection, options, writer).json());
   return kDone;
 }
 

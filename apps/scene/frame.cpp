@@ -185,11 +185,42 @@ raster::Draw FrameDrawer::State::describe(const Instance& instance,
   return draw;
 }
 
+namespace {
+
+/// Where the picture and the planes that are wanted go, sized for it.
+raster::Target targetOf(Image& image, Planes* planes) {
+  const std::size_t width = static_cast<std::size_t>(image.width);
+  const std::size_t pixels = width * static_cast<std::size_t>(image.height);
+  raster::Target target;
+  image.rgba.resize(4 * pixels);
+  target.rgba = image.rgba.data();
+  target.rgbaStride = 4 * width;
+  if (planes == nullptr) return target;
+  if (planes->wantsDepth) {
+    planes->depth.resize(pixels);
+    target.depth = planes->depth.data();
+    target.depthStride = width;
+  }
+  if (planes->wantsNormals) {
+    planes->normals.resize(pixels);
+    target.normals = planes->normals.data();
+    target.normalStride = width;
+  }
+  if (planes->wantsIds) {
+    planes->ids.resize(pixels);
+    target.ids = planes->ids.data();
+    target.idStride = width;
+  }
+  return target;
+}
+
+}  // namespace
+
 FrameDrawer::FrameDrawer(const Scene& scene, int threads) : state_(std::make_unique<State>(scene, threads)) {}
 FrameDrawer::~FrameDrawer() = default;
 
 void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSettings& settings,
-                       Image& image, FrameStatistics* statistics) {
+                       Image& image, FrameStatistics* statistics, Planes* planes) {
   const Clock::time_point start = Clock::now();
   State& s = *state_;
   s.instances.resize(pose.instances.size());
@@ -224,8 +255,6 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
 
   image.width = camera.projection.width;
   image.height = camera.projection.height;
-  image.rgba.resize(4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
-
   raster::Frame frame;
   frame.projection = camera.projection;
   frame.draws = s.draws;
@@ -234,9 +263,7 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
   frame.encoding = settings.encoding;
   frame.background = settings.background;
   frame.samples = settings.samples;
-  raster::Target target;
-  target.rgba = image.rgba.data();
-  target.rgbaStride = 4 * static_cast<std::size_t>(image.width);
+  const raster::Target target = targetOf(image, planes);
   const Clock::time_point rasterStart = Clock::now();
   s.renderer.draw(frame, target, statistics ? &statistics->raster : nullptr);
 

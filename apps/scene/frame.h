@@ -1,7 +1,9 @@
 // One frame: the only place where the silhouette module and the rasterizer meet.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "apps/scene/camera.h"
 #include "apps/scene/image.h"
@@ -29,6 +31,15 @@ struct FrameStatistics {
   double poseMs = 0, refineMs = 0, rasterMs = 0, totalMs = 0;
 };
 
+/// Planes beside the picture, one value per pixel, rows as in the picture. What is not wanted stays as it is.
+struct Planes {
+  bool wantsDepth = false, wantsNormals = false, wantsIds = false;
+  std::vector<float> depth;        ///< view depth of the nearest sample, +infinity where nothing was drawn
+  std::vector<glm::vec3> normals;  ///< unit, view space; 0 where nothing was drawn
+  std::vector<std::uint32_t>
+      ids;  ///< triangle of the coarse scene, instances one after the other, or raster::kNoId
+};
+
 /// Draws frames of one scene; keeps what does not change between frames.
 class FrameDrawer {
  public:
@@ -37,7 +48,7 @@ class FrameDrawer {
 
   /// mesh → topology (once) → classify → refine → stream → rasterize. The picture is resized as the camera says.
   void draw(const Pose& pose, const CameraView& camera, const FrameSettings& settings, Image& image,
-            FrameStatistics* statistics = nullptr);
+            FrameStatistics* statistics = nullptr, Planes* planes = nullptr);
 
   /// The refined stream of one instance in the last frame drawn, in the mesh's space.
   const silhouette::RefinedStream& stream(std::size_t instance) const;
