@@ -85,9 +85,13 @@ SinCos sinCos(double radians) {
   constexpr double kHalfPi2 = 6.07710050630396597660e-11;
   constexpr double kHalfPi3 = 2.02226624879595063154e-21;
   const double quadrant = std::floor(radians * (2.0 / kPi) + 0.5);
-  const double high = (radians - quadrant * kHalfPi1) - quadrant * kHalfPi2;
-  const double high1 = radians - quadrant * kHalfPi1;
-  const double low = ((high1 - high) - quadrant * kHalfPi2) - quadrant * kHalfPi3;
+  const double high1 = radians - quadrant * kHalfPi1, part2 = quadrant * kHalfPi2;
+  const double high2 = high1 - part2;
+  // What the subtraction rounded off: Knuth's TwoSum, since near multiples of pi/2 either operand may be the larger.
+  const double shift = high2 - high1;
+  const double low2 = ((high1 - (high2 - shift)) - (part2 + shift)) - quadrant * kHalfPi3;
+  // At large angles the third part is not small against an ulp: carry it over.
+  const double high = high2 + low2, low = low2 - (high - high2);
   return turned(sinCosReduced(high, low), static_cast<std::int64_t>(quadrant));
 }
 
