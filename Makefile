@@ -8,8 +8,8 @@ PACKAGES := g++ cmake ninja-build pkg-config git \
   libdeflate-dev libpng-dev libxxhash-dev libgtest-dev libbenchmark-dev librapidcheck-dev
 # What `make check` needs besides.
 CHECK_PACKAGES := clang clang-format clang-tidy libclang-rt-14-dev assimp-testmodels xxhash
-# What `make bench` needs besides: gnuplot draws its pictures.
-BENCH_PACKAGES := gnuplot-nox
+# What `make bench` needs besides: gnuplot draws its pictures, Mesa's OSMesa is the peer in the race.
+BENCH_PACKAGES := gnuplot-nox python3 libgl-dev libosmesa6
 
 .PHONY: help build demo pictures check check-all bench format packages check-packages bench-packages
 
@@ -74,3 +74,10 @@ check: check-packages
 # The full matrix; the other compilers of Debian are used where they are installed.
 check-all: check
 	@tests/matrix.sh
+
+# Each part writes its results to bench/results; all together take less than ten minutes.
+bench: bench-packages
+	@cmake --preset release -D LIMN_BUILD_PEER=ON --log-level=WARNING >/dev/null && cmake --build --preset release | tail -n 1
+	@mkdir -p bench/results
+	@bench/race.py --json bench/results/race.json | tee bench/results/race.md
+	@bench/linear.py --picture bench/results/linear.svg | tee bench/results/linear.md
