@@ -75,6 +75,7 @@ void cutStream(const Draw& draw, std::size_t first, std::size_t last, ClusterSet
     const std::uint32_t part = geometry.partOfTriangle.empty() ? 0 : geometry.partOfTriangle[source];
     cutter.add(&draw.stream.indices[3 * t], static_cast<std::uint32_t>(t), geometry.parts[part].material);
   }
+  cutter.finish();
   set.points.resize(set.vertices.size());
   for (std::size_t i = 0; i < set.vertices.size(); ++i)
     set.points.set(i, positionOf(draw, set.vertices[i]), normalOf(draw, set.vertices[i]));

@@ -88,6 +88,10 @@ void ClusterCutter::add(const std::uint32_t* corners, std::uint32_t triangle, st
   ++cluster.triangleCount;
 }
 
+void ClusterCutter::finish() {
+  for (auto& corner : set_.corners) corner.resize(corner.size() + kPadding);
+}
+
 ClusterBounds boundPoints(const Cluster& cluster, const ClusterVertices& v) {
   glm::vec3 low = point(v, cluster.firstVertex), high = low;
   for (std::uint32_t i = 1; i < cluster.vertexCount; ++i) {

@@ -65,6 +65,7 @@ class ClusterCutter {
   /// Empties the set; its memory stays.
   explicit ClusterCutter(ClusterSet& set);
   void add(const std::uint32_t* corners, std::uint32_t triangle, std::uint32_t material);
+  void finish();  ///< after the last triangle
 
  private:
   static constexpr std::uint32_t kSlots = 256;  // of a hash table that never holds more than kClusterVertices

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raster/kernels.h"
+
 namespace limn::raster {
 namespace {
 
@@ -100,7 +102,7 @@ std::size_t Bins::memoryBytes() const {
 }
 
 void FrontEnd::cull(const Frame& frame, std::span<const Batch> batches, const ScreenMap& map,
-                    const Tiling& tiling, std::size_t r) {
+                    const Tiling& tiling, const Kernels& kernels, std::size_t r) {
   Range& range = ranges_[r];
   auto batch = std::upper_bound(batches.begin(), batches.end(), range.begin,
                                 [](std::size_t i, const Batch& b) { return i < b.firstCluster; }) -
@@ -121,7 +123,7 @@ void FrontEnd::cull(const Frame& frame, std::span<const Batch> batches, const Sc
       drawLoosely(*batch, b, c, blended, map, range);
       continue;
     }
-    const TileRect rect = tilesOf(boxOfCluster(*batch, cluster, map), tiling);
+    const TileRect rect = tilesOf(kernels.boxOfCluster(*batch, cluster, map), tiling);
     if (rect.empty()) continue;
     visible_[range.begin + range.visible++] = {b, c, rect};
     clusterBins_.count(r, rect);
@@ -147,7 +149,7 @@ void FrontEnd::drawLoosely(const Batch& batch, std::uint32_t b, std::uint32_t c,
 }
 
 void FrontEnd::run(const Frame& frame, std::span<const Batch> batches, std::size_t clusterCount,
-                   const ScreenMap& map, const Tiling& tiling, Workers& workers) {
+                   const ScreenMap& map, const Tiling& tiling, const Kernels& kernels, Workers& workers) {
   clusterBins_.reset(tiling);
   if (visible_.size() < clusterCount) visible_.resize(clusterCount);
   workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
@@ -158,7 +160,7 @@ void FrontEnd::run(const Frame& frame, std::span<const Batch> batches, std::size
     range.trianglesIn = 0;
     range.loose.clear();
     range.blended.clear();
-    if (range.begin < range.end) cull(frame, batches, map, tiling, r);
+    if (range.begin < range.end) cull(frame, batches, map, tiling, kernels, r);
   });
   clusterBins_.allocate();
   workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {

@@ -15,6 +15,8 @@
 
 namespace limn::raster {
 
+struct Kernels;
+
 inline constexpr std::size_t kRanges = 32;
 
 /// The window cut into tiles.
@@ -59,7 +61,7 @@ struct VisibleCluster {
 class FrontEnd {
  public:
   void run(const Frame& frame, std::span<const Batch> batches, std::size_t clusterCount, const ScreenMap& map,
-           const Tiling& tiling, Workers& workers);
+           const Tiling& tiling, const Kernels& kernels, Workers& workers);
 
   const VisibleCluster& cluster(std::uint32_t item) const { return visible_[item]; }
   const LooseTriangle& loose(std::uint32_t item) const { return loose_[item]; }
@@ -86,7 +88,7 @@ class FrontEnd {
     std::uint64_t trianglesIn = 0;
   };
   void cull(const Frame& frame, std::span<const Batch> batches, const ScreenMap& map, const Tiling& tiling,
-            std::size_t r);
+            const Kernels& kernels, std::size_t r);
   void drawLoosely(const Batch& batch, std::uint32_t b, std::uint32_t c, bool blended, const ScreenMap& map,
                    Range& range);
   void placeLoose(const Tiling& tiling, Workers& workers);

@@ -53,6 +53,7 @@ Geometry::Geometry(const Vertices& vertices, std::span<const std::uint32_t> indi
   for (const Part& part : parts)
     for (std::uint32_t t = part.firstTriangle; t < part.firstTriangle + part.triangleCount; ++t)
       cutter.add(&indices[3UL * t], t, part.material);
+  cutter.finish();
   d.set.points.resize(d.set.vertices.size());
   for (std::size_t i = 0; i < d.set.vertices.size(); ++i)
     d.set.points.set(i, d.positions[d.set.vertices[i]], d.normals[d.set.vertices[i]]);

@@ -130,6 +130,7 @@ struct Statistics {
 struct Tuning {
   int tileWidth = 128;  ///< multiple of 16, at most 128
   int tileHeight = 64;  ///< at most 64
+  bool scalar = false;  ///< no vector kernels: slow, the definition of what they must give
 };
 
 class Renderer {

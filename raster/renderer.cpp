@@ -7,6 +7,7 @@
 #include "raster/base/workers.h"
 #include "raster/batch.h"
 #include "raster/front_end.h"
+#include "raster/kernels.h"
 #include "raster/tile.h"
 
 namespace limn::raster {
@@ -116,19 +117,21 @@ void Renderer::draw(const Frame& frame, const Target& target, Statistics* statis
   const auto start = Clock::now();
   const std::span<const Batch> batches = s.batches.build(frame, map, s.workers);
   const double transformMs = msSince(start);
-  s.front.run(frame, batches, s.batches.clusterCount(), map, tiling, s.workers);
+  const Kernels kernels = s.tuning.scalar ? scalarKernels() : vectorKernels();
+  s.front.run(frame, batches, s.batches.clusterCount(), map, tiling, kernels, s.workers);
   const double binningMs = msSince(start) - transformMs;
 
-  const FrameContext context{frame, target, map, tiling, batches, s.front, samplePattern(frame.samples)};
+  const FrameContext context{frame,  target, map, tiling, batches, s.front, samplePattern(frame.samples),
+                             kernels};
   for (Tile& tile : s.tiles) tile.statistics = {};
   s.workers.forBlocks(tiling.count(), 1, [&](std::size_t index, std::size_t, int slot) {
     Tile& tile = s.tiles[static_cast<std::size_t>(slot)];
     const auto begin = Clock::now();
     tile.begin(context, index);
-    resolveVisibility(tile);
+    kernels.resolveVisibility(tile);
     const double visibilityMs = msSince(begin);
     blendTriangles(tile);
-    shadeTile(tile);
+    kernels.shadeTile(tile);
     tile.statistics.visibilityMs += visibilityMs;
     tile.statistics.shadingMs += msSince(begin) - visibilityMs;
   });

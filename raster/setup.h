@@ -58,10 +58,11 @@ class TriangleSetup {
   bool setBounds(const Tile& tile) {
     const auto [minX, maxX] = std::minmax({corners.x[0], corners.x[1], corners.x[2]});
     const auto [minY, maxY] = std::minmax({corners.y[0], corners.y[1], corners.y[2]});
-    x0 = std::max((minX >> kSubpixelBits) - tile.left, 0);
-    x1 = std::min((maxX >> kSubpixelBits) - tile.left + 1, tile.width);
-    y0 = std::max((minY >> kSubpixelBits) - tile.top, 0);
-    y1 = std::min((maxY >> kSubpixelBits) - tile.top + 1, tile.height);
+    const auto [low, high] = tile.sampleRange;
+    x0 = std::max(((minX - high + kSubpixels - 1) >> kSubpixelBits) - tile.left, 0);
+    x1 = std::min(((maxX - low) >> kSubpixelBits) - tile.left + 1, tile.width);
+    y0 = std::max(((minY - high + kSubpixels - 1) >> kSubpixelBits) - tile.top, 0);
+    y1 = std::min(((maxY - low) >> kSubpixelBits) - tile.top + 1, tile.height);
     return x0 < x1 && y0 < y1;
   }
 

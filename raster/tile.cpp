@@ -12,7 +12,7 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
   top = static_cast<int>(index / columns) * tiling.tileHeight;
   width = std::min(tiling.tileWidth, tiling.width - left);
   height = std::min(tiling.tileHeight, tiling.height - top);
-  stride = tiling.tileWidth;
+  stride = tiling.tileWidth + kRowPadding;
   clusters = c.front.clusterBins().of(index);
   loose = c.front.looseBins().of(index);
   blended = c.front.blendedBins().of(index);
@@ -20,7 +20,12 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
       c.samples.size() * static_cast<std::size_t>(stride) * static_cast<std::size_t>(tiling.tileHeight);
   depth.assign(samples, kNoDepth);
   ids.assign(samples, kNoRecord);
-  records.clear();
+  sampleRange = {kSubpixels, 0};
+  for (const SamplePosition at : c.samples) {
+    sampleRange.low = std::min({sampleRange.low, at.x, at.y});
+    sampleRange.high = std::max({sampleRange.high, at.x, at.y});
+  }
+  recordCount = 0;
   attributes.clear();
   if (!blended.empty()) {
     colors.resize(samples);

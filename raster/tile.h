@@ -15,6 +15,8 @@
 
 namespace limn::raster {
 
+struct Kernels;
+
 /// All of a frame that tiles read.
 struct FrameContext {
   const Frame& frame;
@@ -24,6 +26,7 @@ struct FrameContext {
   std::span<const Batch> batches;
   const FrontEnd& front;
   std::span<const SamplePosition> samples;
+  const Kernels& kernels;
 };
 
 inline constexpr std::uint32_t kNoRecord = 0xffffffffU;
@@ -74,28 +77,45 @@ class Tile {
     std::array<int, 3> order;
     return cornersOf(record, order);
   }
+  /// Keeps a record and returns its number.
+  std::uint32_t add(const Record& record) {
+    reserveRecords(1);
+    records[recordCount] = record;
+    return recordCount++;
+  }
+  /// Makes room for so many more.
+  void reserveRecords(std::size_t count) {
+    if (records.size() < recordCount + count) records.resize(2 * (recordCount + count));
+  }
   /// Submission order.
   std::uint64_t orderOf(const Record& record) const;
   std::size_t memoryBytes() const;
 
   const FrameContext* context = nullptr;
-  int left = 0, top = 0;      ///< of the tile in the window, pixels
-  int width = 0, height = 0;  ///< less at the window's edges
-  int stride = 0;
+  int left = 0, top = 0;           ///< of the tile in the window, pixels
+  int width = 0, height = 0;       ///< less at the window's edges
+  int stride = 0;                  ///< from row to row; kernels may write whole vectors beyond the width
   std::vector<float> depth;        // by offset()
   std::vector<std::uint32_t> ids;  // record that won the sample
-  std::vector<Record> records;
+  std::vector<Record> records;     // the first recordCount
+  std::uint32_t recordCount = 0;
   std::vector<Attributes> attributes;
   std::vector<VertexBlock> blocks;  // of the tile's clusters
   std::span<const std::uint32_t> clusters, loose, blended;
   std::vector<glm::vec4>
       colors;  // colour · alpha, alpha, by offset(): of pixels that something is blended over
   std::vector<std::uint8_t> isBlended;  // per pixel of the tile: its colours are in `colors`
+  struct {
+    std::int32_t low, high;
+  } sampleRange{};  ///< least and largest coordinate of the samples within a pixel
   Statistics statistics;
 };
 
 /// Planes of texture coordinates, colours and tangents of a record; made when first asked for.
 const Attributes& attributesOf(Tile& tile, Record& record);
+
+/// Rows are this much longer than tiles are wide: the longest vector.
+inline constexpr int kRowPadding = 16;
 
 /// Depth and triangle of every sample of the tile.
 void resolveVisibility(Tile& tile);

@@ -14,7 +14,7 @@ void transformCluster(const Batch& batch, const Cluster& cluster, const ScreenMa
     out.plane[i][0] = n.x * v.q;
     out.plane[i][1] = n.y * v.q;
     out.plane[i][2] = n.z * v.q;
-    out.plane[i][3] = v.depth;
+    out.plane[i][3] = out.depth[i] = v.depth;
   }
 }
 

@@ -10,6 +10,7 @@ namespace limn::raster {
 /// The window coordinates, view-space unit normals times q, and depths of a cluster's vertices.
 struct VertexBlock {
   alignas(64) std::int32_t x[kClusterVertices], y[kClusterVertices];
+  alignas(64) float depth[kClusterVertices];
   alignas(64) float plane[kClusterVertices][4];  ///< normal · q (x, y, z), depth
 };
 

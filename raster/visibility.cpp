@@ -3,6 +3,7 @@
 // Based on: J. Pineda, "A parallel algorithm for polygon rasterization", 1988; C. Burns, W. Hunt, "The Visibility
 // Buffer", 2013.
 // Differs in: equal depths go to the triangle submitted first, so that the result depends on no order of drawing.
+#include "raster/kernels.h"
 #include "raster/setup.h"
 #include "raster/surface.h"
 #include "raster/tile.h"
@@ -12,8 +13,9 @@ namespace {
 
 // A triangle counts in the tile where its box begins.
 bool isFirstTile(const Tile& tile, const Corners& c) {
-  const int minX = std::min({c.x[0], c.x[1], c.x[2]}) >> kSubpixelBits;
-  const int minY = std::min({c.y[0], c.y[1], c.y[2]}) >> kSubpixelBits;
+  const int bias = kSubpixels - 1 - tile.sampleRange.high;
+  const int minX = (std::min({c.x[0], c.x[1], c.x[2]}) + bias) >> kSubpixelBits;
+  const int minY = (std::min({c.y[0], c.y[1], c.y[2]}) + bias) >> kSubpixelBits;
   return std::max(minX, 0) >= tile.left && std::max(minY, 0) >= tile.top;
 }
 
@@ -45,10 +47,7 @@ void drawTriangle(Tile& tile, TriangleSetup& t) {
         won |= static_cast<unsigned>(wins) << s;
       }
       if (won == 0 || (masked && !passesMask(tile, t, surface, coverage, x, y))) continue;
-      if (id == kNoRecord) {
-        id = static_cast<std::uint32_t>(tile.records.size());
-        tile.records.push_back(t.record);
-      }
+      if (id == kNoRecord) id = tile.add(t.record);
       for (unsigned s = 0; won >> s != 0; ++s) {
         if (((won >> s) & 1U) == 0) continue;
         const std::size_t o = tile.offset(static_cast<int>(s), x, y);
@@ -58,15 +57,16 @@ void drawTriangle(Tile& tile, TriangleSetup& t) {
     }
 }
 
-void drawCluster(Tile& tile, std::uint32_t entry) {
+}  // namespace
+
+void drawClusterScalar(Tile& tile, std::uint32_t entry) {
   const FrameContext& context = *tile.context;
   const VisibleCluster& visible = context.front.cluster(tile.clusters[entry]);
   const Batch& batch = context.batches[visible.batch];
   const ClusterSet& set = *batch.set;
   const Cluster& cluster = set.clusters[visible.cluster];
   const bool doubleSided = context.frame.materials[cluster.material].doubleSided;
-  VertexBlock& block = tile.blocks[entry];
-  transformCluster(batch, cluster, context.map, block);
+  const VertexBlock& block = tile.blocks[entry];
   for (std::uint32_t t = 0; t < cluster.triangleCount; ++t) {
     if (batch.isReplaced(cluster.firstTriangle + t)) continue;
     Corners corners;
@@ -82,13 +82,21 @@ void drawCluster(Tile& tile, std::uint32_t entry) {
   }
 }
 
-}  // namespace
+void drawLooseScalar(Tile& tile, std::uint32_t item) {
+  TriangleSetup setup;
+  if (setLoose(tile, item, setup)) drawTriangle(tile, setup);
+}
 
 void resolveVisibility(Tile& tile) {
-  for (std::uint32_t entry = 0; entry < tile.clusters.size(); ++entry) drawCluster(tile, entry);
-  TriangleSetup setup;
-  for (const std::uint32_t item : tile.loose)
-    if (setLoose(tile, item, setup)) drawTriangle(tile, setup);
+  const Kernels& kernels = tile.context->kernels;
+  for (std::uint32_t entry = 0; entry < tile.clusters.size(); ++entry) {
+    const VisibleCluster& visible = tile.context->front.cluster(tile.clusters[entry]);
+    const Batch& batch = tile.context->batches[visible.batch];
+    kernels.transformCluster(batch, batch.set->clusters[visible.cluster], tile.context->map,
+                             tile.blocks[entry]);
+    drawClusterScalar(tile, entry);
+  }
+  for (const std::uint32_t item : tile.loose) drawLooseScalar(tile, item);
 }
 
 }  // namespace limn::raster

@@ -1,0 +1,119 @@
+// Every instruction set that the machine has gives the pixels of the plain C++ definition, bit for bit.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <random>
+
+#include "raster/texture.h"
+#include "tests/raster/fixture.h"
+
+namespace limn::raster::test {
+namespace {
+
+// The bits of the SSE4, AVX2 and AVX-512 that this machine has, one by one.
+std::vector<std::int64_t> targets() {
+  std::vector<std::int64_t> all;
+  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) all.push_back(left & -left);
+  return all;
+}
+
+void expectSameOnEveryTarget(Scene& scene, const char* what) {
+  Renderer scalar(2, Tuning{.scalar = true});
+  Statistics expectedCounts, counts;
+  const Picture expected = scene.draw(scalar, &expectedCounts);
+  for (const std::int64_t target : targets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().DeInit();
+    Renderer renderer(2);
+    const Picture picture = scene.draw(renderer, &counts);
+    EXPECT_TRUE(picture.ids == expected.ids) << what << ' ' << hwy::TargetName(target);
+    EXPECT_TRUE(picture.depth == expected.depth) << what << ' ' << hwy::TargetName(target);
+    EXPECT_TRUE(picture.normals == expected.normals) << what << ' ' << hwy::TargetName(target);
+    EXPECT_TRUE(picture.rgba == expected.rgba) << what << ' ' << hwy::TargetName(target);
+    EXPECT_EQ(counts.trianglesDrawn, expectedCounts.trianglesDrawn) << what << ' ' << hwy::TargetName(target);
+    EXPECT_EQ(counts.pixelsCovered, expectedCounts.pixelsCovered) << what << ' ' << hwy::TargetName(target);
+    EXPECT_EQ(counts.pixelsShaded, expectedCounts.pixelsShaded) << what << ' ' << hwy::TargetName(target);
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+}
+
+// Triangles of one size class around random places; `grid` > 0 puts corners on multiples of 1/grid pixel.
+Soup triangles(std::uint32_t seed, int count, float extent, float size, float grid) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  const auto snap = [&](float v) { return grid > 0.0F ? std::floor(v * grid) / grid : v; };
+  Soup soup;
+  for (int i = 0; i < count; ++i) {
+    const float x = unit(random) * extent, y = unit(random) * extent,
+                z = -1.0F - 400.0F * (1.0F + unit(random));
+    for (int k = 0; k < 3; ++k) {
+      const glm::vec3 p{snap(x + unit(random) * size), snap(y + unit(random) * size), z + unit(random)};
+      soup.indices.push_back(soup.vertex(p, {unit(random), unit(random), 1.0F}));
+    }
+  }
+  return soup;
+}
+
+struct SizeClass {
+  const char* name;
+  int count;
+  float size, grid;
+};
+constexpr SizeClass kClasses[] = {{"sub-pixel", 20000, 0.6F, 0.0F},
+                                  {"micro", 8000, 2.0F, 0.0F},
+                                  {"on pixel centres", 3000, 4.0F, 2.0F},
+                                  {"small", 3000, 12.0F, 0.0F},
+                                  {"on tile corners", 300, 200.0F, 1.0F / 64.0F},
+                                  {"large", 100, 400.0F, 0.0F},
+                                  {"far beyond the window", 60, 30000.0F, 0.0F}};
+
+TEST(Kernels, AgreeOnTrianglesOfEverySize) {
+  for (const SizeClass& c : kClasses)
+    for (const int samples : {1, 4, 8}) {
+      const Geometry geometry = triangles(11, c.count / samples, 150.0F, c.size, c.grid).geometry();
+      Scene scene(pixelProjection(300, 170));
+      scene.frame.samples = samples;
+      scene.draws[0].geometry = &geometry;
+      scene.materials[0].doubleSided = samples == 4;
+      expectSameOnEveryTarget(scene, c.name);
+    }
+}
+
+TEST(Kernels, AgreeOnSlivers) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  Soup soup;
+  for (int i = 0; i < 4000; ++i) {
+    const glm::vec3 a{unit(random) * 150.0F, unit(random) * 80.0F, -100.0F};
+    const glm::vec3 along{unit(random) * 300.0F, unit(random) * 300.0F, unit(random) * 50.0F};
+    soup.triangle(a, a + along, a + along * 0.5F + glm::vec3{unit(random), unit(random), 0.0F} * 0.02F);
+  }
+  const Geometry geometry = soup.geometry();
+  Scene scene(pixelProjection(300, 170));
+  scene.draws[0].geometry = &geometry;
+  scene.materials[0].doubleSided = true;
+  expectSameOnEveryTarget(scene, "slivers");
+}
+
+TEST(Kernels, AgreeInPerspectiveFromTinyToHugeDistances) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  Soup soup;
+  for (int i = 0; i < 6000; ++i) {
+    const float w = std::exp2(unit(random) * 20.0F);
+    for (int k = 0; k < 3; ++k) {
+      const float x = unit(random) * w, y = unit(random) * w, z = -w * (1.0F + unit(random) * 1.2F);
+      soup.indices.push_back(soup.vertex({x, y, z}, {unit(random), unit(random), unit(random)}));
+    }
+  }
+  const Geometry geometry = soup.geometry();
+  Scene scene({true, 140.0F, 140.0F, 1e-6F, 1e6F, 281, 203});
+  scene.draws[0].geometry = &geometry;
+  scene.materials[0].doubleSided = true;
+  scene.frame.samples = 1;
+  expectSameOnEveryTarget(scene, "w from 1e-6 to 1e6");
+}
+
+}  // namespace
+}  // namespace limn::raster::test
