@@ -12,6 +12,7 @@ Kernels vectorKernels() {
   Kernels kernels = scalarKernels();
   setTransformKernels(kernels);
   setVisibilityKernel(kernels);
+  setShadingKernel(kernels);
 
   return kernels;
 }

@@ -20,5 +20,7 @@ Kernels vectorKernels();
 /// Visibility of one cluster of the tile, or one loose triangle, in plain C++: vector kernels leave alpha masks to it.
 void drawClusterScalar(Tile& tile, std::uint32_t entry);
 void drawLooseScalar(Tile& tile, std::uint32_t item);
+/// Colour of one pixel of the tile, in plain C++: vector kernels leave to it what a vector cannot do as one.
+void shadePixelScalar(Tile& tile, int x, int y);
 
 }  // namespace limn::raster

@@ -132,6 +132,7 @@ void Renderer::draw(const Frame& frame, const Target& target, Statistics* statis
     const double visibilityMs = msSince(begin);
     blendTriangles(tile);
     kernels.shadeTile(tile);
+    writePlanes(tile);
     tile.statistics.visibilityMs += visibilityMs;
     tile.statistics.shadingMs += msSince(begin) - visibilityMs;
   });

@@ -20,8 +20,6 @@ class Shader {
   void pixel(int x, int y) {
     glm::vec4 sum(0.0F);
     unsigned left = (1U << samples_) - 1U;
-    int nearest = -1;
-    float nearestDepth = kNoDepth;
     int empty = 0;
     const bool blended = !tile_.blended.empty() && tile_.isBlended[tile_.offset(0, x, y)] != 0;
     for (int s = 0; s < samples_; ++s) {
@@ -30,7 +28,6 @@ class Shader {
         ++empty;
         continue;
       }
-      if (nearest < 0 || tile_.depth[o] > nearestDepth) nearest = s, nearestDepth = tile_.depth[o];
       if (blended || ((left >> s) & 1U) == 0) continue;
       const unsigned mask = samplesOf(tile_.ids[o], x, y);
       left &= ~mask;
@@ -41,6 +38,15 @@ class Shader {
       writeBlended(x, y);
     else
       writePixel(x, y, sum, empty);
+  }
+
+  void planes(int x, int y) {
+    int nearest = -1;
+    for (int s = 0; s < samples_; ++s) {
+      const std::size_t o = tile_.offset(s, x, y);
+      if (tile_.ids[o] == kNoRecord) continue;
+      if (nearest < 0 || tile_.depth[o] > tile_.depth[tile_.offset(nearest, x, y)]) nearest = s;
+    }
     writePlanes(x, y, nearest);
   }
 
@@ -129,6 +135,18 @@ class Shader {
 };
 
 }  // namespace
+
+void shadePixelScalar(Tile& tile, int x, int y) {
+  Shader(tile).pixel(x, y);
+}
+
+void writePlanes(Tile& tile) {
+  const Target& target = tile.context->target;
+  if (target.depth == nullptr && target.normals == nullptr && target.ids == nullptr) return;
+  Shader shader(tile);
+  for (int y = 0; y < tile.height; ++y)
+    for (int x = 0; x < tile.width; ++x) shader.planes(x, y);
+}
 
 void shadeTile(Tile& tile) {
   Shader shader(tile);

@@ -12,10 +12,6 @@
 namespace limn::raster {
 namespace {
 
-bool hasColors(const Draw& draw) {
-  return !draw.geometry->data().colors.empty() || !draw.stream.vertices.colors.empty();
-}
-
 // Attributes of a record at a point, perspective-correct.
 class Interpolator {
  public:
@@ -86,19 +82,12 @@ glm::vec3 mappedNormal(const glm::vec3& normal, const Interpolator& value, const
 
 }  // namespace
 
-Surface surfaceOf(const Tile& tile, const Record& record) {
-  const TriangleRef ref = tile.refOf(record);
-  const Batch& batch = tile.context->batches[ref.batch];
-  return {&batch, &tile.context->frame.materials[batch.set->clusters[ref.cluster].material]};
-}
-
 glm::vec4 baseColorAt(Tile& tile, Record& record, const Surface& surface, SamplePosition at) {
   const Material& m = *surface.material;
   glm::vec4 base = m.baseColor;
-  const bool colored = hasColors(*surface.batch->draw);
-  if (!colored && m.baseColorTexture == nullptr) return base;
+  if (!surface.hasColors && m.baseColorTexture == nullptr) return base;
   const Interpolator value = interpolator(tile, record, at);
-  if (colored)
+  if (surface.hasColors)
     base = {base.x * value(Attributes::kRed), base.y * value(Attributes::kGreen),
             base.z * value(Attributes::kBlue), base.w * value(Attributes::kAlpha)};
   if (m.baseColorTexture != nullptr) {
@@ -111,7 +100,7 @@ glm::vec4 baseColorAt(Tile& tile, Record& record, const Surface& surface, Sample
 glm::vec4 shadeAt(Tile& tile, Record& record, SamplePosition at) {
   const FrameContext& context = *tile.context;
   const ScreenMap& map = context.map;
-  const Surface surface = surfaceOf(tile, record);
+  const Surface surface = tile.surfaceOf(record);
   const Material& m = *surface.material;
   ++tile.statistics.pixelsShaded;
   const glm::vec4 base = baseColorAt(tile, record, surface, at);

@@ -7,13 +7,6 @@
 
 namespace limn::raster {
 
-/// The batch and the material that a record is drawn with.
-struct Surface {
-  const Batch* batch;
-  const Material* material;
-};
-Surface surfaceOf(const Tile& tile, const Record& record);
-
 /// Linear base colour and alpha: factor, vertex colour and texture. `at` is in window sub-pixels.
 glm::vec4 baseColorAt(Tile& tile, Record& record, const Surface& surface, SamplePosition at);
 

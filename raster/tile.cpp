@@ -32,6 +32,16 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
     isBlended.assign(samples / c.samples.size(), 0);
   }
   if (blocks.size() < clusters.size()) blocks.resize(clusters.size());
+  surfaces.clear();
+  for (const std::uint32_t item : clusters)
+    surfaces.push_back(surfaceOf(c.front.cluster(item).batch, c.front.cluster(item).cluster));
+}
+
+Surface Tile::surfaceOf(std::uint32_t b, std::uint32_t cluster) const {
+  const Batch& batch = context->batches[b];
+  const Draw& draw = *batch.draw;
+  const bool hasColors = !draw.geometry->data().colors.empty() || !draw.stream.vertices.colors.empty();
+  return {&batch, &context->frame.materials[batch.set->clusters[cluster].material], hasColors};
 }
 
 TriangleRef Tile::refOf(const Record& record) const {
@@ -73,8 +83,8 @@ std::uint64_t Tile::orderOf(const Record& record) const {
 std::size_t Tile::memoryBytes() const {
   return depth.capacity() * sizeof(float) + ids.capacity() * sizeof(std::uint32_t) +
          records.capacity() * sizeof(Record) + blocks.capacity() * sizeof(VertexBlock) +
-         attributes.capacity() * sizeof(Attributes) + colors.capacity() * sizeof(glm::vec4) +
-         isBlended.capacity();
+         surfaces.capacity() * sizeof(Surface) + attributes.capacity() * sizeof(Attributes) +
+         colors.capacity() * sizeof(glm::vec4) + isBlended.capacity();
 }
 
 }  // namespace limn::raster

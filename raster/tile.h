@@ -56,6 +56,13 @@ struct Attributes {
   bool isBackFace;
 };
 
+/// The batch and the material that a triangle is drawn with.
+struct Surface {
+  const Batch* batch;
+  const Material* material;
+  bool hasColors;  ///< some vertex has
+};
+
 /// One thread's memory for tiles, used again from tile to tile and frame to frame.
 class Tile {
  public:
@@ -70,6 +77,11 @@ class Tile {
   }
   /// Where a record's triangle comes from.
   TriangleRef refOf(const Record& record) const;
+  Surface surfaceOf(const Record& record) const {
+    if ((record.source & Record::kLoose) == 0) return surfaces[record.source / kClusterTriangles];
+    const TriangleRef ref = refOf(record);
+    return surfaceOf(ref.batch, ref.cluster);
+  }
   /// Its corners on the sub-pixel grid, in drawing order; indices[i] says which corner of the triangle they
   /// are.
   Corners cornersOf(const Record& record, std::array<int, 3>& order) const;
@@ -89,6 +101,7 @@ class Tile {
   }
   /// Submission order.
   std::uint64_t orderOf(const Record& record) const;
+  Surface surfaceOf(std::uint32_t batch, std::uint32_t cluster) const;
   std::size_t memoryBytes() const;
 
   const FrameContext* context = nullptr;
@@ -100,6 +113,7 @@ class Tile {
   std::vector<Record> records;     // the first recordCount
   std::uint32_t recordCount = 0;
   std::vector<Attributes> attributes;
+  std::vector<Surface> surfaces;    // of the tile's clusters
   std::vector<VertexBlock> blocks;  // of the tile's clusters
   std::span<const std::uint32_t> clusters, loose, blended;
   std::vector<glm::vec4>
@@ -121,7 +135,9 @@ inline constexpr int kRowPadding = 16;
 void resolveVisibility(Tile& tile);
 /// Blended triangles over what is visible, far to near.
 void blendTriangles(Tile& tile);
-/// Colours, and the other planes.
+/// The picture.
 void shadeTile(Tile& tile);
+/// The target's other planes, where it has them.
+void writePlanes(Tile& tile);
 
 }  // namespace limn::raster

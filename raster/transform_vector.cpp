@@ -6,6 +6,7 @@
 #define HWY_TARGET_INCLUDE "raster/transform_vector.cpp"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
+#include "raster/vector-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::raster {
@@ -20,12 +21,6 @@ Box boxOfClusterVector(const Batch& batch, const Cluster& cluster, const ScreenM
   return boxOfCluster(batch, cluster, map);
 }
 #else
-namespace hn = hwy::HWY_NAMESPACE;
-using F = HWY_CAPPED(float, 16);
-using I = hn::Rebind<std::int32_t, F>;
-using VF = hn::Vec<F>;
-using VI = hn::Vec<I>;
-
 // ((m0·x + m1·y) + m2·z) + m3
 inline VF rowOf(const float* m, VF x, VF y, VF z) {
   const F f;

@@ -30,7 +30,7 @@ bool passesMask(Tile& tile, TriangleSetup& t, const Surface& surface, unsigned c
 }
 
 void drawTriangle(Tile& tile, TriangleSetup& t) {
-  const Surface surface = surfaceOf(tile, t.record);
+  const Surface surface = tile.surfaceOf(t.record);
   const bool masked = surface.material->alphaMode == AlphaMode::kMask;
   if (isFirstTile(tile, t.corners)) ++tile.statistics.trianglesDrawn;
   std::uint32_t id = kNoRecord;  // only triangles that win a sample get a record

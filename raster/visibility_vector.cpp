@@ -12,6 +12,7 @@
 #define HWY_TARGET_INCLUDE "raster/visibility_vector.cpp"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
+#include "raster/vector-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::raster {
@@ -22,25 +23,8 @@ void resolveVisibilityVector(Tile& tile) {
   resolveVisibility(tile);
 }
 #else
-namespace hn = hwy::HWY_NAMESPACE;
-using F = HWY_CAPPED(float, 16);
-using F4 = HWY_CAPPED(float, 4);
-using I = hn::Rebind<std::int32_t, F>;
-using U8 = hn::Rebind<std::uint8_t, F>;
-using VF = hn::Vec<F>;
-using VI = hn::Vec<I>;
-using MI = hn::Mask<I>;
-
-constexpr std::size_t kLanes = HWY_LANES(float) < 16 ? HWY_LANES(float) : 16;
 constexpr std::int32_t kSmall = 1 << 15;  // boxes below it have areas of 32 bits
 constexpr std::int32_t kMicro = 2;        // a micro triangle's last pixel is at most this far from its first
-
-inline MI atLeast(VI a, VI b) {
-  return hn::Not(hn::Lt(a, b));
-}
-inline MI atMost(VI a, VI b) {
-  return hn::Not(hn::Gt(a, b));
-}
 
 // A triangle of the cluster in the queues: its number and how its corners were turned.
 constexpr std::int32_t kSwapped = 128, kBack = 256;
@@ -373,9 +357,7 @@ class Visibility {
     alignas(64) std::int32_t at[kLanes];
     hn::Store(z, F(), depth);
     hn::Store(offset, I(), at);
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(I(), covered, bits);
-    for (unsigned left = bits[0] | (static_cast<unsigned>(bits[1]) << 8U); left != 0; left &= left - 1) {
+    for (unsigned left = bitsOf(covered); left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(left));
       const auto o = static_cast<std::size_t>(at[lane]);
       if (depth[lane] < tile_.depth[o]) continue;

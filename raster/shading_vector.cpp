@@ -1,0 +1,239 @@
+// Shading of a tile, a vector of pixels at a time. Definition: shading.cpp, surface.cpp and lighting.h.
+//
+// Pixels that a vector cannot handle as one (edges between samples, blended pixels, normal maps) are left to the
+// definition itself.
+#include <bit>
+
+#include "raster/encode.h"
+#include "raster/lighting.h"
+#include "raster/surface.h"
+#include "raster/texel.h"
+#include "raster/vector_kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "raster/shading_vector.cpp"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+#include "raster/lighting-inl.h"
+#include "raster/texel-inl.h"
+#include "raster/vector-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace limn::raster {
+namespace HWY_NAMESPACE {
+
+#if HWY_TARGET == HWY_SCALAR
+void shadeTileVector(Tile& tile) {
+  shadeTile(tile);
+}
+#else
+
+class Shading {
+ public:
+  explicit Shading(Tile& tile)
+      : tile_(tile),
+        context_(*tile.context),
+        lighting_(context_.map, context_.frame.lights),
+        background_(packed(context_.frame.background)) {}
+
+  void run() {
+    for (int y = 0; y < tile_.height; ++y)
+      for (int x = 0; x < tile_.width; x += static_cast<int>(kLanes)) block(x, y);
+  }
+
+ private:
+  // A vector of pixels: what is interpolated at them.
+  struct Block {
+    Points points;
+    Color color;  // of the vertices
+    FootprintVector footprint;
+  };
+
+  std::int32_t packed(const glm::vec4& c) const {
+    const Encoding e = context_.frame.encoding;
+    return static_cast<std::int32_t>(encode(c.x, e) | static_cast<unsigned>(encode(c.y, e)) << 8U |
+                                     static_cast<unsigned>(encode(c.z, e)) << 16U |
+                                     static_cast<unsigned>(toByte(c.w)) << 24U);
+  }
+
+  HWY_INLINE VI idsAt(std::size_t sample, int x, int y) const {
+    const std::size_t o = tile_.offset(static_cast<int>(sample), x, y);
+    return hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(&tile_.ids[o]));
+  }
+
+  HWY_INLINE void block(int x, int y) {
+    const I d;
+    const VI ids = idsAt(0, x, y);
+    const MI inside = hn::FirstN(d, static_cast<std::size_t>(tile_.width - x));
+    MI whole = inside;  // pixels all of whose samples show the same
+    for (std::size_t s = 1; s < context_.samples.size(); ++s)
+      whole = hn::And(whole, hn::Eq(ids, idsAt(s, x, y)));
+    if (!tile_.blended.empty()) whole = hn::And(whole, notBlended(x, y));
+    const MI seen = hn::And(whole, hn::Ne(ids, hn::Set(d, -1)));
+    MI done = whole;
+    VI color = hn::Set(d, background_);
+    if (!hn::AllFalse(d, seen)) {
+      MI complex = hn::FirstN(d, 0);
+      color = hn::IfThenElse(seen, colors(x, y, ids, seen, complex), color);
+      done = hn::AndNot(complex, done);
+      const std::size_t count = hn::CountTrue(d, hn::And(done, seen));
+      tile_.statistics.pixelsShaded += count;
+      tile_.statistics.pixelsCovered += count;
+    }
+    store(color, x, y);
+    for (unsigned left = bitsOf(hn::AndNot(done, inside)); left != 0; left &= left - 1)
+      shadePixelScalar(tile_, x + std::countr_zero(left), y);
+  }
+
+  MI notBlended(int x, int y) const {
+    const I d;
+    alignas(64) std::int32_t free[kLanes];
+    for (std::size_t i = 0; i < kLanes; ++i)
+      free[i] = tile_.isBlended[tile_.offset(0, x, y) + i] == 0 ? 1 : 0;
+    return hn::Ne(hn::Load(d, free), hn::Zero(d));
+  }
+
+  void store(VI color, int x, int y) const {
+    const std::size_t row = static_cast<std::size_t>(tile_.top + y) * context_.target.rgbaStride;
+    std::uint8_t* to = context_.target.rgba + row + static_cast<std::size_t>(tile_.left + x) * 4;
+    const hn::Repartition<std::uint8_t, I> d8;
+    if (x + static_cast<int>(kLanes) <= tile_.width) {
+      hn::StoreU(hn::BitCast(d8, color), d8, to);
+      return;
+    }
+    alignas(64) std::uint8_t bytes[4 * kLanes];
+    hn::Store(hn::BitCast(d8, color), d8, bytes);
+    std::copy(bytes, bytes + static_cast<std::ptrdiff_t>(4 * (tile_.width - x)), to);
+  }
+
+  // Colours of the pixels in `seen`, encoded; those left to the scalar code are added to `complex`.
+  HWY_INLINE VI colors(int x, int y, VI ids, MI seen, MI& complex) {
+    const I d;
+    const F f;
+    Block b;
+    const VI left = hn::Set(d, (tile_.left + x) * kSubpixels + kOneSample[0].x);
+    b.points.px = hn::Add(left, hn::ShiftLeft<kSubpixelBits>(hn::Iota(d, 0)));
+    const std::int32_t py = (tile_.top + y) * kSubpixels + kOneSample[0].y;
+    b.points.py = hn::Set(d, py);
+    b.points.nx = b.points.ny = b.points.nz = hn::Zero(f);
+    b.points.depth = hn::Set(f, 1.0F);
+    VI result = hn::Zero(d);
+    const std::uint32_t* row = &tile_.ids[tile_.offset(0, x, y)];
+    // Usually all triangles of the block have one material; else one material is shaded after the other.
+    for (MI todo = seen; !hn::AllFalse(d, todo);) {
+      const Material* material = nullptr;
+      MI mine = hn::FirstN(d, 0);
+      for (MI rest = todo; !hn::AllFalse(d, rest);) {
+        const std::uint32_t id = row[static_cast<std::size_t>(hn::FindFirstTrue(d, rest))];
+        const MI same = hn::And(hn::Eq(ids, hn::Set(d, static_cast<std::int32_t>(id))), rest);
+        rest = hn::AndNot(same, rest);
+        Record& record = tile_.records[id];
+        const Surface surface = tile_.surfaceOf(record);
+        if (material == nullptr) material = surface.material;
+        if (surface.material != material) continue;
+        mine = hn::Or(mine, same);
+        if (!isComplex(*material)) interpolate(b, record, surface, py, hn::RebindMask(f, same));
+      }
+      todo = hn::AndNot(mine, todo);
+      if (isComplex(*material))
+        complex = hn::Or(complex, mine);
+      else
+        result = hn::IfThenElse(mine, shade(b, *material), result);
+    }
+    return result;
+  }
+
+  static bool isComplex(const Material& m) {
+    return m.normalTexture != nullptr || m.emissiveTexture != nullptr;
+  }
+
+  // Values of one triangle's planes, where it is seen.
+  HWY_INLINE void interpolate(Block& b, Record& record, const Surface& surface, std::int32_t py, MF where) {
+    const I d;
+    const F f;
+    const F4 f4;
+    const float rise = static_cast<float>(py - record.y0);
+    const VF dx = hn::ConvertTo(f, hn::Sub(b.points.px, hn::Set(d, record.x0)));
+    alignas(16) float row[4];
+    hn::Store(hn::Add(hn::Load(f4, record.origin), hn::Mul(hn::Load(f4, record.slopeY), hn::Set(f4, rise))),
+              f4, row);
+    const auto value = [&](int i) {
+      return hn::Add(hn::Set(f, row[i]), hn::Mul(hn::Set(f, record.slopeX[i]), dx));
+    };
+    b.points.nx = hn::IfThenElse(where, value(0), b.points.nx);
+    b.points.ny = hn::IfThenElse(where, value(1), b.points.ny);
+    b.points.nz = hn::IfThenElse(where, value(2), b.points.nz);
+    const bool textured = surface.material->baseColorTexture != nullptr;
+    if (!textured && !surface.hasColors) {
+      if (lighting_.needsDepth()) b.points.depth = hn::IfThenElse(where, value(3), b.points.depth);
+      b.color = {hn::Set(f, 1.0F), hn::Set(f, 1.0F), hn::Set(f, 1.0F)};
+      return;
+    }
+    const VF depth = value(3);
+    b.points.depth = hn::IfThenElse(where, depth, b.points.depth);
+    const bool perspective = context_.map.perspective;
+    const VF w = perspective ? hn::Div(hn::Set(f, 1.0F), depth) : hn::Set(f, 1.0F);
+    const Attributes& a = attributesOf(tile_, record);
+    const auto attribute = [&](int i) {
+      const VF start = hn::Set(f, a.origin[i] + a.slopeY[i] * rise);
+      return hn::Mul(hn::Add(start, hn::Mul(hn::Set(f, a.slopeX[i]), dx)), w);
+    };
+    const auto put = [&](VF& to, VF v) { to = hn::IfThenElse(where, v, to); };
+    put(b.color.r, surface.hasColors ? attribute(Attributes::kRed) : hn::Set(f, 1.0F));
+    put(b.color.g, surface.hasColors ? attribute(Attributes::kGreen) : hn::Set(f, 1.0F));
+    put(b.color.b, surface.hasColors ? attribute(Attributes::kBlue) : hn::Set(f, 1.0F));
+    if (!textured) return;
+    const float qx = perspective ? record.slopeX[3] : 0.0F, qy = perspective ? record.slopeY[3] : 0.0F;
+    const VF u = attribute(Attributes::kU), v = attribute(Attributes::kV);
+    const VF scale = hn::Mul(w, hn::Set(f, static_cast<float>(kSubpixels)));
+    const auto change = [&](float slope, VF at, float q) {
+      return hn::Mul(hn::Sub(hn::Set(f, slope), hn::Mul(at, hn::Set(f, q))), scale);
+    };
+    put(b.footprint.u, u), put(b.footprint.v, v);
+    put(b.footprint.ux, change(a.slopeX[Attributes::kU], u, qx));
+    put(b.footprint.vx, change(a.slopeX[Attributes::kV], v, qx));
+    put(b.footprint.uy, change(a.slopeY[Attributes::kU], u, qy));
+    put(b.footprint.vy, change(a.slopeY[Attributes::kV], v, qy));
+  }
+
+  HWY_INLINE VI shade(const Block& b, const Material& m) const {
+    const F f;
+    const glm::vec4& c = m.baseColor;
+    Color base{hn::Mul(hn::Set(f, c.x), b.color.r), hn::Mul(hn::Set(f, c.y), b.color.g),
+               hn::Mul(hn::Set(f, c.z), b.color.b)};
+    if (m.baseColorTexture != nullptr) {
+      const Color texel = sampleVector(m.baseColorTexture->data(), b.footprint);
+      base = {hn::Mul(base.r, texel.r), hn::Mul(base.g, texel.g), hn::Mul(base.b, texel.b)};
+    }
+    const Color lit = m.unlit ? base : lighting_(b.points, base, m);
+    return packedOf(lit, hn::Set(I(), 255), context_.frame.encoding);
+  }
+
+  Tile& tile_;
+  const FrameContext& context_;
+  Lighting lighting_;
+  std::int32_t background_;
+};
+
+void shadeTileVector(Tile& tile) {
+  Shading(tile).run();
+}
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace limn::raster
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace limn::raster {
+HWY_EXPORT(shadeTileVector);
+namespace {
+void shade(Tile& tile) {
+  HWY_DYNAMIC_DISPATCH(shadeTileVector)(tile);
+}
+}  // namespace
+void setShadingKernel(Kernels& kernels) {
+  kernels.shadeTile = shade;
+}
+}  // namespace limn::raster
+#endif

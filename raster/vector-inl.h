@@ -1,0 +1,55 @@
+// The vector types of the kernels: at most 16 lanes, so that rows need no more padding than kRowPadding.
+#if defined(LIMN_RASTER_VECTOR_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LIMN_RASTER_VECTOR_INL_H_
+#undef LIMN_RASTER_VECTOR_INL_H_
+#else
+#define LIMN_RASTER_VECTOR_INL_H_
+#endif
+
+#include <cstddef>
+#include <cstdint>
+
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace limn::raster {
+namespace HWY_NAMESPACE {
+
+#if HWY_TARGET != HWY_SCALAR
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F = HWY_CAPPED(float, 16);
+using F4 = HWY_CAPPED(float, 4);
+using I = hn::Rebind<std::int32_t, F>;
+using U8 = hn::Rebind<std::uint8_t, F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+using MI = hn::Mask<I>;
+using MF = hn::Mask<F>;
+
+inline constexpr std::size_t kLanes = HWY_LANES(float) < 16 ? HWY_LANES(float) : 16;
+
+HWY_INLINE MI atLeast(VI a, VI b) {
+  return hn::Not(hn::Lt(a, b));
+}
+HWY_INLINE MI atMost(VI a, VI b) {
+  return hn::Not(hn::Gt(a, b));
+}
+
+/// (a·b + c·d) + e·f, in that order.
+HWY_INLINE VF dot3(VF a, VF b, VF c, VF d, VF e, VF f) {
+  return hn::Add(hn::Add(hn::Mul(a, b), hn::Mul(c, d)), hn::Mul(e, f));
+}
+
+/// Bit i: lane i is set.
+HWY_INLINE unsigned bitsOf(MI lanes) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(I(), lanes, bits);
+  return bits[0] | (static_cast<unsigned>(bits[1]) << 8U);
+}
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace limn::raster
+HWY_AFTER_NAMESPACE();
+#endif
