@@ -65,8 +65,8 @@ check: check-packages
 	@clang-format --dry-run -Werror $(SOURCES)
 	@$(call compile,release)
 	@$(call compile,clang,apps/all)
-	@tests/same_pixels.sh build/release build/clang
 	@$(call compile,sanitize)
+	@tests/same_pixels.sh build/release build/clang build/sanitize
 	@ctest --preset sanitize
 	@tests/tidy.sh build/sanitize
 	@ctest --preset release

@@ -12,7 +12,7 @@ hashes() {
   local limn=$1/apps/limn model method
   local out=(-o "$scratch/%d.rgba" --format rgba --hash --quiet)
   for model in demo sphere-200 torus-576 knot-480 cone-70 pawn; do
-    for method in flat patches pn; do
+    for method in flat patches curves pn; do
       echo "$model $method"
       "$limn" render "builtin:$model" --method "$method" --size 200x150 --turntable 3 "${out[@]}"
     done
