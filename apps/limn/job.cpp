@@ -182,8 +182,9 @@ scene::FrameSettings Job::settings(int frame) const {
 std::string Job::describe() const {
   const JobOptions& o = options_;
   const bool isBuiltin = o.model.starts_with("builtin:");
-  std::string text =
-      std::string("limn ") + LIMN_VERSION + ": render " + shellWord(isBuiltin ? o.model : baseName(o.model));
+  std::string text = std::string("limn ") + LIMN_VERSION;
+  if (!scene_.contentHash.empty()) text += ", model xxh128 " + scene_.contentHash;
+  text += ": render " + shellWord(isBuiltin ? o.model : baseName(o.model));
   text += " --size " + std::to_string(o.width) + "x" + std::to_string(o.height);
   if (!isBuiltin) text += " --crease " + numberText(o.creaseDegrees);
   if (o.turntable > 0) text += " --turntable " + std::to_string(o.turntable);

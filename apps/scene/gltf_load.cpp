@@ -6,6 +6,8 @@
 #include "apps/scene/gltf_document.h"
 #include "apps/scene/gltf_mesh.h"
 #include "apps/scene/gltf_nodes.h"
+#include "apps/scene/gltf_uri.h"
+#include "apps/scene/image.h"
 #include "raster/base/check.h"
 
 namespace limn::scene {
@@ -28,16 +30,32 @@ std::size_t chargeInstances(GltfDocument& document, const Scene& scene) {
   return triangles;
 }
 
+/// What tells this model from another one of the same name: the hash of its file, and of those that it refers to.
+std::string contentHash(const std::string& fileHash, const GltfDocument& document) {
+  constexpr std::size_t kLargestImageFile = 256U << 20;
+  std::string hashes = fileHash;
+  for (const GltfBuffer& buffer : document.buffers)
+    if (!buffer.owned.empty()) hashes += hashBytes(buffer.owned.data(), buffer.owned.size());
+  for (const GltfImage& image : document.images) {
+    if (image.path.empty()) continue;
+    if (const auto bytes = readFileBytes(image.path, kLargestImageFile))
+      hashes += hashBytes(bytes->data(), bytes->size());
+  }
+  return hashes == fileHash ? fileHash : hashBytes(hashes.data(), hashes.size());
+}
+
 }  // namespace
 
 Scene loadGltf(const std::string& file, std::vector<std::uint8_t> bytes,
                const std::optional<std::filesystem::path>& folder, const LoadOptions& options) {
   require(options.creaseDegrees >= 0.0 && options.creaseDegrees <= 180.0,
           "the crease angle is 0 to 180 degrees");
+  const std::string fileHash = hashBytes(bytes.data(), bytes.size());
   GltfDocument document(file, std::move(bytes), folder);
   checkAccessors(document);
   Scene scene;
   scene.name = file;
+  scene.contentHash = contentHash(fileHash, document);
   for (std::size_t i = 0; i < document.model.meshes.size(); ++i) {
     scene.meshes.push_back(readMesh(document, i, options.creaseDegrees));
   }

@@ -103,6 +103,9 @@ struct Animation {
 
 struct Scene {
   std::string name;
+  /// XXH3-128 of the file (as xxh128sum prints it), or of the hashes of it and all files that it refers to; empty for
+  /// built-in models.
+  std::string contentHash;
   std::vector<Mesh> meshes;
   std::vector<Node> nodes;    ///< parents before children; only those of the drawn scene have effect
   std::vector<bool> inScene;  ///< per node

@@ -125,6 +125,28 @@ TEST_F(Render, SkipsWholeFilesOfTheSameJobOnly) {
   EXPECT_EQ(statistics["frames"]["drawn"], 3);
 }
 
+TEST_F(Render, AFileOfTheSameNameWithOtherContentsIsAnotherJob) {
+  // A triangle; then the same with its last corner moved.
+  const std::string start =
+      R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "buffers": [{"byteLength": 36, "uri": "t.bin"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}], "accessors": [{"bufferView": 0, "componentType": 5126,
+    "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [2, 2, 0]}]})";
+  float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  write("t.gltf", start);
+  write("t.bin", std::string(reinterpret_cast<const char*>(corners), sizeof corners));
+  const Words frame = {"render", "t.gltf", "-o", "t.png", "--size", "20x20", "--skip-existing"};
+  const Result result = limn(frame);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string first = contents("t.png");
+  EXPECT_EQ(limn(frame).status, 0);
+  EXPECT_EQ(contents("t.png"), first);
+  corners[7] = 2;
+  write("t.bin", std::string(reinterpret_cast<const char*>(corners), sizeof corners));
+  EXPECT_EQ(limn(frame).status, 0);
+  EXPECT_NE(contents("t.png"), first);
+}
+
 TEST_F(Render, ADryRunChecksAndListsButWritesNothing) {
   const Result result =
       limn(turntable(12) + Words{"-o", "x/%03d.png", "--dry-run", "--frames", "3-9", "--shard", "2/3"});
