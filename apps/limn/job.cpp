@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 #include "apps/limn/names.h"
@@ -216,6 +217,22 @@ std::size_t drawnTriangles(const scene::Scene& scene) {
     if (scene.inScene[i] && scene.nodes[i].mesh >= 0)
       triangles += scene.meshes[static_cast<std::size_t>(scene.nodes[i].mesh)].indices.size() / 3;
   return triangles;
+}
+
+Job makeJob(const scene::Scene& scene, const JobOptions& options) {
+  try {
+    Job job(scene, options);
+    scene::Pose pose;
+    job.pose(1, pose);
+    job.camera(1, pose);
+    return job;
+  } catch (const std::invalid_argument& error) {
+    // What limn::require says, without the function that said it.
+    const std::string text = error.what();
+    const std::size_t colon = text.find(": ");
+    throw UsageError("the camera cannot be used: " +
+                     (colon == std::string::npos ? text : text.substr(colon + 2)));
+  }
 }
 
 }  // namespace limn::program

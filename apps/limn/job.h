@@ -70,6 +70,9 @@ class Job {
   std::string text_;
 };
 
+/// A job whose first frame has a usable camera. Throws UsageError.
+Job makeJob(const scene::Scene& scene, const JobOptions& options);
+
 /// Triangles as drawn: a mesh counts once per node of the scene that holds it.
 std::size_t drawnTriangles(const scene::Scene& scene);
 

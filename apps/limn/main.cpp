@@ -20,6 +20,8 @@ int run(int count, const char* const* arguments) {
   switch (line.command) {
     case Command::kRender:
       return render(line.render);
+    case Command::kRefine:
+      return refine(line.refine);
     case Command::kInfo:
       return info(line.info);
     case Command::kCompare:

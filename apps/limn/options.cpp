@@ -111,63 +111,62 @@ void addPictureOptions(CLI::App& app, RenderOptions& o) {
       });
 }
 
-void addFrameOptions(CLI::App& app, RenderOptions& o) {
+/// What moves. Returns the group for more of it.
+Group addMotionOptions(CLI::App& app, JobOptions& o) {
   Group frames(app, "Frames and motion");
   frames.add("--turntable", "N", "N frames of one turn about the up axis", "", [&o](const std::string& text) {
-    o.job.turntable = static_cast<int>(parseInteger(text, 1, kMostFrames));
+    o.turntable = static_cast<int>(parseInteger(text, 1, kMostFrames));
   });
-  frames.add("--frames", "LIST", "which frames of the job to draw, like 1-10,15,20-40:2; the first is 1",
-             "all", [&o](const std::string& text) { o.frames = text; });
   CLI::Option* animation =
       frames.add("--animation", "NAME|INDEX", "an animation of the file; its frames run over --time", "none",
-                 [&o](const std::string& text) { o.job.animation = text; });
+                 [&o](const std::string& text) { o.animation = text; });
   frames
       .add("--fps", "F", "frames per second of the animation", "24",
-           [&o](const std::string& text) { o.job.fps = static_cast<double>(positive(text, false)); })
+           [&o](const std::string& text) { o.fps = static_cast<double>(positive(text, false)); })
       ->needs(animation);
   frames
       .add("--time", "A:B", "seconds of the animation to draw", "whole animation",
-           [&o](const std::string& text) { o.job.times = parseTimes(text); })
+           [&o](const std::string& text) { o.times = parseTimes(text); })
       ->needs(animation);
+  return frames;
 }
 
-void addCameraOptions(CLI::App& app, RenderOptions& o) {
+void addCameraOptions(CLI::App& app, JobOptions& o) {
   Group automatic(app, "Camera, framed automatically");
   CLI::Option* azimuth = automatic.addNumber(
-      "--azimuth", "DEG", "0 looks along -z, positive turns the eye to the right", o.job.azimuthDegrees);
+      "--azimuth", "DEG", "0 looks along -z, positive turns the eye to the right", o.azimuthDegrees);
   CLI::Option* elevation =
-      automatic.addNumber("--elevation", "DEG", "positive raises the eye", o.job.elevationDegrees);
+      automatic.addNumber("--elevation", "DEG", "positive raises the eye", o.elevationDegrees);
   CLI::Option* zoom = automatic.add("--zoom", "F", "magnification", "1", [&o](const std::string& text) {
-    o.job.zoom = static_cast<double>(positive(text, false));
+    o.zoom = static_cast<double>(positive(text, false));
   });
   Group own(app, "Camera of your own");
   CLI::Option* eye = own.add("--eye", "x,y,z", "where the eye is", "",
-                             [&o](const std::string& text) { o.job.eye = parseVector(text); });
+                             [&o](const std::string& text) { o.eye = parseVector(text); });
   own.add("--target", "x,y,z", "what it looks at", "centre of the scene",
-          [&o](const std::string& text) { o.job.target = parseVector(text); })
+          [&o](const std::string& text) { o.target = parseVector(text); })
       ->needs(eye);
-  own.add("--up", "x,y,z", "what is up", "0,1,0",
-          [&o](const std::string& text) { o.job.up = parseVector(text); })
+  own.add("--up", "x,y,z", "what is up", "0,1,0", [&o](const std::string& text) { o.up = parseVector(text); })
       ->needs(eye);
   CLI::Option* fov = own.add("--fov", "DEG", "vertical field of view", "30", [&o](const std::string& text) {
-    o.job.fovDegrees = parseNumber(text);
-    if (!(o.job.fovDegrees > 0.0 && o.job.fovDegrees < 180.0))
+    o.fovDegrees = parseNumber(text);
+    if (!(o.fovDegrees > 0.0 && o.fovDegrees < 180.0))
       throw UsageError("'" + text + "' is no field of view; give degrees above 0 and below 180");
   });
   CLI::Option* ortho =
       own.add("--ortho", "HEIGHT|fit", "orthographic, so many units high or just high enough", "",
               [&o](const std::string& text) {
-                o.job.orthoHeight = text == "fit" ? -1.0 : static_cast<double>(positive(text, false));
+                o.orthoHeight = text == "fit" ? -1.0 : static_cast<double>(positive(text, false));
               });
   CLI::Option* camera = own.add("--camera", "NAME|INDEX", "a camera of the file", "none",
-                                [&o](const std::string& text) { o.job.camera = text; });
+                                [&o](const std::string& text) { o.camera = text; });
   fov->excludes(ortho);
   for (CLI::Option* option : {azimuth, elevation, zoom}) option->excludes(eye)->excludes(camera);
   for (CLI::Option* option : {eye, fov, ortho}) option->excludes(camera);
 }
 
-void addSilhouetteOptions(CLI::App& app, RenderOptions& o) {
-  silhouette::Parameters& p = o.job.settings.refinement;
+void addSilhouetteOptions(CLI::App& app, JobOptions& o) {
+  silhouette::Parameters& p = o.settings.refinement;
   Group group(app, "Silhouettes");
   group.addChoice("--method", "how triangles are smoothed", methodNames(), p.method);
   CLI::Option* tolerance =
@@ -199,9 +198,9 @@ void addSilhouetteOptions(CLI::App& app, RenderOptions& o) {
   group.addSwitch("--features", "smooth creases", p.features);
   group.addSwitch("--boundaries", "smooth open edges", p.boundaries);
   group.add("--crease", "DEG", "for files without normals: edges that turn more are creases",
-            numberText(o.job.creaseDegrees), [&o](const std::string& text) {
-              o.job.creaseDegrees = parseNumber(text);
-              if (!(o.job.creaseDegrees >= 0.0 && o.job.creaseDegrees <= 180.0))
+            numberText(o.creaseDegrees), [&o](const std::string& text) {
+              o.creaseDegrees = parseNumber(text);
+              if (!(o.creaseDegrees >= 0.0 && o.creaseDegrees <= 180.0))
                 throw UsageError("'" + text + "' is no angle between faces; give degrees from 0 to 180");
             });
 }
@@ -246,9 +245,11 @@ CLI::App* addRender(CLI::App& app, RenderOptions& o) {
   addModel(*render, o.job.model);
   addOutputOptions(*render, o);
   addPictureOptions(*render, o);
-  addFrameOptions(*render, o);
-  addCameraOptions(*render, o);
-  addSilhouetteOptions(*render, o);
+  addMotionOptions(*render, o.job)
+      .add("--frames", "LIST", "which frames of the job to draw, like 1-10,15,20-40:2; the first is 1", "all",
+           [&o](const std::string& text) { o.frames = text; });
+  addCameraOptions(*render, o.job);
+  addSilhouetteOptions(*render, o.job);
   render->footer(R"(Examples:
   limn render -o demo.png                                        the built-in demonstration model
   limn render duck.glb -o flat.png --method flat                 a model as it is, without smoothing
@@ -257,6 +258,31 @@ CLI::App* addRender(CLI::App& app, RenderOptions& o) {
   limn render duck.glb -o big.png --size 3840x2160 --tolerance 0.1 --samples 8
 )");
   return render;
+}
+
+CLI::App* addRefine(CLI::App& app, RefineOptions& o) {
+  CLI::App* refine = app.add_subcommand("refine", "the triangles of one view, as a GLB file");
+  addModel(*refine, o.job.model);
+  Group output(*refine, "Output");
+  output.add("-o,--output", "OUT.glb", "the file, or - for standard output", "",
+             [&o](const std::string& text) { o.output = text; });
+  output.addFlag("--alpha", "add the coarse edges as lines with their silhouetteness as attribute _ALPHA",
+                 o.alphas);
+  output.addFlag("--quiet", "no notes", o.quiet);
+  output.add(
+      "--threads", "N", "threads that work, in all", std::to_string(o.threads),
+      [&o](const std::string& text) { o.threads = static_cast<int>(parseInteger(text, 1, kMostThreads)); });
+  output.add("--size", "WxH", "pixels of the window that --tolerance counts", "1280x800",
+             [&o](const std::string& text) { std::tie(o.job.width, o.job.height) = parseSize(text); });
+  addMotionOptions(*refine, o.job)
+      .add("--frame", "K", "which frame of the job", "1",
+           [&o](const std::string& text) { o.frame = static_cast<int>(parseInteger(text, 1, kMostFrames)); });
+  addCameraOptions(*refine, o.job);
+  addSilhouetteOptions(*refine, o.job);
+  refine->footer(R"(Example:
+  limn refine duck.glb -o refined.glb --azimuth 60 --tolerance 0.5 --alpha
+)");
+  return refine;
 }
 
 /// What to say of arguments that no option takes.
@@ -289,6 +315,8 @@ CommandLine readCommandLine(int count, const char* const* arguments) {
   app.set_version_flag("--version", versionText);
   app.require_subcommand(1);
   const CLI::App* render = addRender(app, line.render);
+  line.refine.threads = line.render.threads;
+  const CLI::App* refine = addRefine(app, line.refine);
   CLI::App* info = app.add_subcommand("info", "what a model holds and what limn makes of it");
   addModel(*info, line.info.model);
   info->add_flag("--json", line.info.json, "for programs");
@@ -330,7 +358,8 @@ written; 5 images differ; 128+n ended by signal n.
   } catch (const CLI::RequiredError& error) {
     if (!app.get_subcommands().empty()) throw UsageError(std::string(error.what()) + "; see limn --help");
     if (!app.remaining().empty()) refuseExtras(app);
-    throw UsageError("name a command: render, info, compare, verify or models; limn --help tells more");
+    throw UsageError(
+        "name a command: render, refine, info, compare, verify or models; limn --help tells more");
   } catch (const CLI::ArgumentMismatch& error) {
     const std::string text = error.what(), name = text.substr(0, text.find(':'));
     throw UsageError(
@@ -341,6 +370,7 @@ written; 5 images differ; 128+n ended by signal n.
   }
   using Command = CommandLine::Command;
   if (render->parsed()) line.command = Command::kRender;
+  if (refine->parsed()) line.command = Command::kRefine;
   if (info->parsed()) line.command = Command::kInfo;
   if (compare->parsed()) line.command = Command::kCompare;
   if (verify->parsed()) line.command = Command::kVerify;

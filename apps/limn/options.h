@@ -25,6 +25,14 @@ struct RenderOptions {
   bool skipExisting = false, dryRun = false, quiet = false;
 };
 
+struct RefineOptions {
+  JobOptions job;
+  int frame = 1;
+  std::string output;
+  bool alphas = false, quiet = false;
+  int threads = 1;
+};
+
 struct InfoOptions {
   std::string model = "builtin:demo";
   bool json = false;
@@ -41,9 +49,10 @@ struct VerifyOptions {
 };
 
 struct CommandLine {
-  enum class Command { kRender, kInfo, kCompare, kVerify, kModels, kPrinted };
+  enum class Command { kRender, kRefine, kInfo, kCompare, kVerify, kModels, kPrinted };
   Command command = Command::kPrinted;  ///< kPrinted: help or version, already on standard output
   RenderOptions render;
+  RefineOptions refine;
   InfoOptions info;
   CompareOptions compare;
   VerifyOptions verify;

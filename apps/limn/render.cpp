@@ -129,13 +129,6 @@ std::string statisticsJson(const Totals& t, const WriterTimes& writer, const Ren
   return json.dump(2) + "\n";
 }
 
-/// What limn::require says, without the function that said it.
-std::string reason(const std::invalid_argument& error) {
-  const std::string text = error.what();
-  const std::size_t colon = text.find(": ");
-  return colon == std::string::npos ? text : text.substr(colon + 2);
-}
-
 void listFrames(const Selection& selection, const OutputPattern* pattern) {
   for (int i = 0; i < selection.count(); ++i) {
     const int frame = selection.frame(i);
@@ -227,16 +220,8 @@ int render(const RenderOptions& options) {
     for (const std::string& notice : scene.notices) printMessage("note: " + notice);
 
   start = Clock::now();
-  std::optional<Job> job;
-  try {
-    job.emplace(scene, options.job);
-    scene::Pose pose;
-    job->pose(1, pose);
-    job->camera(1, pose);
-  } catch (const std::invalid_argument& error) {
-    throw UsageError("the camera cannot be used: " + reason(error));
-  }
-  const Selection selection(options, job->frameCount());
+  const Job job = makeJob(scene, options.job);
+  const Selection selection(options, job.frameCount());
   if (pattern && !pattern->hasNumber() && !pattern->isStandardOutput() && selection.list().count() > 1)
     throw UsageError(std::to_string(selection.list().count()) + " frames do not fit into one file '" +
                      *options.output + "'; give a pattern like frames/%04d.png");
@@ -248,14 +233,14 @@ int render(const RenderOptions& options) {
   }
   const bool writes = pattern && !options.dryRun;
   if (writes && !pattern->isStandardOutput()) makeDirectories(*pattern, selection);
-  FrameWriter writer(*job, options, writes ? &*pattern : nullptr, selection.count(), drawnTriangles(scene));
+  FrameWriter writer(job, options, writes ? &*pattern : nullptr, selection.count(), drawnTriangles(scene));
   start = Clock::now();
-  drawFrames(scene, *job, selection, options, writer, totals);
+  drawFrames(scene, job, selection, options, writer, totals);
   totals.totalMs = millisecondsSince(start);
 
   if (options.statistics) writeText(*options.statistics, statisticsJson(totals, writer.times(), options));
   if (options.manifest && writes)
-    writeText(*options.manifest, manifestOf(*job, selection, options, writer).json());
+    writeText(*options.manifest, manifestOf(job, selection, options, writer).json());
   return kDone;
 }
 

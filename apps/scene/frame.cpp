@@ -47,6 +47,10 @@ struct InstanceResources {
   silhouette::Mesh shape;  ///< as it is refined and drawn this frame
   std::span<const glm::vec4> shapeTangents;
   bool ownShape = false;  ///< other positions and normals than the mesh of the scene
+  glm::dmat4 shapeToWorld{1.0};
+  std::uint32_t mesh = 0;
+  std::size_t task = 0;  ///< of the refinement, while visible
+  bool visible = false;
   silhouette::RefinedStream stream;
   std::vector<glm::vec2> texcoords;  ///< of the stream's vertices
   std::vector<glm::vec4> colors, streamTangents;
@@ -115,6 +119,7 @@ struct FrameDrawer::State {
   std::vector<silhouette::RefineTask> tasks;
   std::vector<raster::Draw> draws;
   std::vector<raster::Light> lights;
+  silhouette::Parameters parameters;  ///< of the last frame
 
   State(const Scene& drawn, int threads) : scene(drawn), workers(threads), renderer(threads) {
     meshes.resize(scene.meshes.size());
@@ -142,7 +147,8 @@ void FrameDrawer::State::place(const Instance& instance, const CameraView& camer
     out.shapeTangents = instance.tangents;
   }
 
-  glm::dmat4 shapeToWorld = instance.toWorld;
+  glm::dmat4& shapeToWorld = out.shapeToWorld;
+  shapeToWorld = instance.toWorld;
   const glm::dmat3 linear(instance.toWorld);
   const bool similar = isSimilarity(linear);
   if (!similar) {
@@ -162,6 +168,8 @@ void FrameDrawer::State::place(const Instance& instance, const CameraView& camer
     out.refiner->deform(out.shape);
   }
   silhouette::Refiner& refiner = out.ownShape ? *out.refiner : shared.refiner;
+  out.mesh = instance.mesh;
+  out.task = tasks.size();
   tasks.push_back({&refiner,
                    silhouette::makeView(camera.projection, camera.worldToView * shapeToWorld),
                    &out.stream,
@@ -219,20 +227,19 @@ raster::Target targetOf(Image& image, Planes* planes) {
 FrameDrawer::FrameDrawer(const Scene& scene, int threads) : state_(std::make_unique<State>(scene, threads)) {}
 FrameDrawer::~FrameDrawer() = default;
 
-void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSettings& settings,
-                       Image& image, FrameStatistics* statistics, Planes* planes) {
-  const Clock::time_point start = Clock::now();
+void FrameDrawer::refine(const Pose& pose, const CameraView& camera, const FrameSettings& settings) {
   State& s = *state_;
+  s.parameters = settings.refinement;
   s.instances.resize(pose.instances.size());
   s.tasks.clear();
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
+    s.instances[i].visible = pose.instances[i].visible;
     if (pose.instances[i].visible) s.place(pose.instances[i], camera, s.instances[i]);
   }
   silhouette::refineAll(s.tasks, settings.refinement, s.workers);
 
   s.draws.clear();
   std::uint32_t firstId = 0;
-  std::size_t placed = 0;
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
     const Mesh& mesh = s.scene.meshes[pose.instances[i].mesh];
     InstanceResources& resources = s.instances[i];
@@ -247,9 +254,16 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
     interpolate<glm::vec4>(mesh, origins, mesh.colors, resources.colors);
     interpolate<glm::vec4>(mesh, origins, resources.shapeTangents, resources.streamTangents);
     raster::Draw& draw = s.draws.emplace_back(s.describe(pose.instances[i], resources));
-    draw.modelToView = s.tasks[placed++].view.modelToView;
+    draw.modelToView = s.tasks[resources.task].view.modelToView;
     draw.firstId = id;
   }
+}
+
+void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSettings& settings,
+                       Image& image, FrameStatistics* statistics, Planes* planes) {
+  const Clock::time_point start = Clock::now();
+  State& s = *state_;
+  refine(pose, camera, settings);
   viewLights(s.scene, pose, camera, settings, s.lights);
   const double refineMs = millisecondsSince(start);
 
@@ -280,6 +294,24 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
   statistics->refineMs = refineMs;
   statistics->rasterMs = millisecondsSince(rasterStart);
   statistics->totalMs = millisecondsSince(start);
+}
+
+RefinedInstance FrameDrawer::instance(std::size_t instance) const {
+  require(instance < state_->instances.size() && state_->instances[instance].visible,
+          "no such instance in the last frame");
+  const InstanceResources& resources = state_->instances[instance];
+  return {resources.shape,   &state_->meshes[resources.mesh]->topology,
+          &resources.stream, resources.texcoords,
+          resources.colors,  resources.shapeToWorld};
+}
+
+void FrameDrawer::silhouetteness(std::size_t instance, std::vector<float>& alphas) {
+  require(instance < state_->instances.size(), "no such instance in the last frame");
+  const InstanceResources& resources = state_->instances[instance];
+  alphas.clear();
+  if (!resources.visible) return;
+  const silhouette::RefineTask& task = state_->tasks[resources.task];
+  task.refiner->silhouetteness(task.view, state_->parameters, alphas);
 }
 
 const silhouette::RefinedStream& FrameDrawer::stream(std::size_t instance) const {

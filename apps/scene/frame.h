@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "apps/scene/camera.h"
@@ -40,6 +41,16 @@ struct Planes {
       ids;  ///< triangle of the coarse scene, instances one after the other, or raster::kNoId
 };
 
+/// One instance as a frame has it: a coarse shape, and the stream that replaces some of its triangles.
+struct RefinedInstance {
+  silhouette::Mesh shape;
+  const silhouette::Topology* topology = nullptr;
+  const silhouette::RefinedStream* stream = nullptr;
+  std::span<const glm::vec2> texcoords;  ///< of the stream's vertices, as far as the mesh has them
+  std::span<const glm::vec4> colors;
+  glm::dmat4 shapeToWorld{1.0};
+};
+
 /// Draws frames of one scene; keeps what does not change between frames.
 class FrameDrawer {
  public:
@@ -49,6 +60,14 @@ class FrameDrawer {
   /// mesh → topology (once) → classify → refine → stream → rasterize. The picture is resized as the camera says.
   void draw(const Pose& pose, const CameraView& camera, const FrameSettings& settings, Image& image,
             FrameStatistics* statistics = nullptr, Planes* planes = nullptr);
+
+  /// The geometry of a frame without its pixels.
+  void refine(const Pose& pose, const CameraView& camera, const FrameSettings& settings);
+
+  /// One visible instance of the last frame drawn or refined. Borrowed until the next one.
+  RefinedInstance instance(std::size_t instance) const;
+  /// Silhouetteness of the edges of its topology in that frame; empty where it was not visible.
+  void silhouetteness(std::size_t instance, std::vector<float>& alphas);
 
   /// The refined stream of one instance in the last frame drawn, in the mesh's space.
   const silhouette::RefinedStream& stream(std::size_t instance) const;

@@ -1,0 +1,115 @@
+// limn refine: the file is sound glTF, holds what is drawn, and limn draws it to the same picture.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "tests/program/run_program.h"
+
+namespace {
+
+using limn::test::operator+;
+using limn::test::ProgramTest;
+using limn::test::Result;
+using nlohmann::json;
+using Words = std::vector<std::string>;
+
+struct Glb {
+  json document;
+  std::string binary;
+
+  explicit Glb(const std::string& bytes) {
+    const auto word = [&](std::size_t at) {
+      std::uint32_t value = 0;
+      std::memcpy(&value, bytes.data() + at, 4);
+      return std::size_t{value};
+    };
+    EXPECT_EQ(bytes.substr(0, 4), "glTF");
+    EXPECT_EQ(word(8), bytes.size());
+    const std::size_t length = word(12);
+    EXPECT_EQ(length % 4, 0U);
+    document = json::parse(bytes.substr(20, length));
+    EXPECT_EQ(word(20 + length), bytes.size() - 28 - length);
+    binary = bytes.substr(28 + length);
+    EXPECT_EQ(document["buffers"][0]["byteLength"], binary.size());
+  }
+
+  template <class T>
+  std::vector<T> values(int accessor, std::size_t width) const {
+    const json& a = document["accessors"][static_cast<std::size_t>(accessor)];
+    const json& view = document["bufferViews"][a["bufferView"].get<std::size_t>()];
+    std::vector<T> all(a["count"].get<std::size_t>() * width);
+    EXPECT_EQ(all.size() * sizeof(T), view["byteLength"].get<std::size_t>());
+    std::memcpy(all.data(), binary.data() + view["byteOffset"].get<std::size_t>(), all.size() * sizeof(T));
+    return all;
+  }
+};
+
+class Refine : public ProgramTest {};
+
+TEST_F(Refine, HoldsSoundTrianglesWithUnitNormals) {
+  for (const char* method : {"flat", "patches", "curves", "pn"}) {
+    const Result result = limn({"refine", "builtin:pawn", "-o", "p.glb", "--method", method});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const Glb glb(contents("p.glb"));
+    const json& primitive = glb.document["meshes"][0]["primitives"][0];
+    const auto positions = glb.values<float>(primitive["attributes"]["POSITION"], 3);
+    const auto normals = glb.values<float>(primitive["attributes"]["NORMAL"], 3);
+    const auto indices = glb.values<std::uint32_t>(primitive["indices"], 1);
+    ASSERT_EQ(positions.size(), normals.size());
+    for (std::size_t i = 0; i < normals.size(); i += 3)
+      ASSERT_NEAR(std::hypot(normals[i], normals[i + 1], normals[i + 2]), 1.0, 1e-6);
+    for (const std::uint32_t index : indices) ASSERT_LT(index, positions.size() / 3);
+    if (std::string(method) == "flat")
+      EXPECT_EQ(indices.size(), 3 * 360U);
+    else
+      EXPECT_GT(indices.size(), 3 * 360U) << method;
+  }
+}
+
+TEST_F(Refine, IsDrawnToThePictureItWasMadeFrom) {
+  // Drawn flat, the refined triangles cover what the smooth frame covers.
+  const Words view = {"--eye", "0,3,6", "--target", "0,1,0", "--size", "160x160", "--samples", "1"};
+  ASSERT_EQ(limn(Words{"refine", "builtin:pawn", "-o", "p.glb", "--eye", "0,3,6", "--target", "0,1,0",
+                       "--size", "160x160"})
+                .status,
+            0);
+  ASSERT_EQ(limn(Words{"render", "builtin:pawn", "-o", "smooth.png"} + view).status, 0);
+  const Result drawn = limn(Words{"render", "p.glb", "-o", "refined.png", "--method", "flat"} + view);
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  const Result compared = limn({"compare", "smooth.png", "refined.png"});
+  // Normals are rounded anew, so a few pixels may differ by a step or two; a wrong outline differs by far more.
+  const std::string most = "largest difference is ";
+  const std::size_t at = compared.out.find(most);
+  if (compared.status == 5) {
+    EXPECT_LE(std::stoi(compared.out.substr(at + most.size())), 4) << compared.out;
+  }
+}
+
+TEST_F(Refine, AlphasAreThoseOfTheCoarseEdges) {
+  ASSERT_EQ(limn({"refine", "builtin:icosphere-320", "-o", "s.glb", "--alpha"}).status, 0);
+  const Glb glb(contents("s.glb"));
+  const json& lines = glb.document["meshes"][1]["primitives"][0];
+  EXPECT_EQ(lines["mode"], 1);
+  const auto alphas = glb.values<float>(lines["attributes"]["_ALPHA"], 1);
+  ASSERT_EQ(alphas.size(), 2 * 480U);
+  std::size_t smooth = 0, flat = 0;
+  for (std::size_t i = 0; i < alphas.size(); i += 2) {
+    ASSERT_EQ(alphas[i], alphas[i + 1]);
+    ASSERT_GE(alphas[i], 0.0f);
+    ASSERT_LE(alphas[i], 1.0f);
+    (alphas[i] > 0 ? smooth : flat) += 1;
+  }
+  EXPECT_GT(smooth, 20U);
+  EXPECT_GT(flat, 20U);
+}
+
+TEST_F(Refine, RefusesWhatCannotBe) {
+  EXPECT_EQ(limn({"refine", "builtin:pawn"}).status, 2);
+  EXPECT_EQ(limn({"refine", "builtin:pawn", "-o", "a.glb", "--frame", "2"}).status, 2);
+  EXPECT_EQ(limn({"refine", "builtin:pawn", "-o", "/dev/full"}).status, 4);
+  EXPECT_EQ(limn({"refine", "nothing.glb", "-o", "a.glb"}).status, 3);
+}
+
+}  // namespace
