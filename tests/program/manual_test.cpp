@@ -1,0 +1,62 @@
+// Every command of the manual works.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "tests/program/run_program.h"
+
+namespace {
+
+using limn::test::ProgramTest;
+
+class Manual : public ProgramTest {};
+
+/// The lines between "```sh" and "```", joined where they go on.
+std::vector<std::string> commandsOf(const std::string& file) {
+  std::ifstream text(file);
+  std::vector<std::string> commands;
+  bool inside = false, continues = false;
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with("```")) {
+      inside = line == "```sh";
+    } else if (inside) {
+      if (continues)
+        commands.back() += line;
+      else
+        commands.push_back(line);
+      continues = line.ends_with("|");
+    }
+  }
+  return commands;
+}
+
+TEST_F(Manual, EveryCommandWorks) {
+  const std::vector<std::string> commands = commandsOf(LIMN_MANUAL);
+  ASSERT_GE(commands.size(), 15U);
+  const bool hasFfmpeg = std::system("command -v ffmpeg >/dev/null") == 0;
+  const std::string programs = std::filesystem::path(LIMN_PROGRAM).parent_path();
+  for (const std::string& command : commands) {
+    if (!hasFfmpeg && command.find("ffmpeg") != std::string::npos) continue;
+    const std::string line = "cd '" + directory_.string() + "' && PATH='" + programs + "':$PATH && { " +
+                             command + "; } >/dev/null";
+    EXPECT_EQ(WEXITSTATUS(std::system(line.c_str())), 0) << command;
+  }
+}
+
+TEST_F(Manual, NamesEveryOption) {
+  std::ifstream text(LIMN_MANUAL);
+  const std::string manual{std::istreambuf_iterator<char>(text), std::istreambuf_iterator<char>()};
+  std::istringstream help(limn({"render", "--help"}).out);
+  for (std::string word; help >> word;) {
+    if (!word.starts_with("--") && !word.starts_with("-o,--")) continue;
+    const std::string option = word.substr(word.find("--"));
+    if (option == "--output" || option == "--help" ||
+        option.find_first_not_of("-abcdefghijklmnopqrstuvwxyz") != std::string::npos)
+      continue;
+    EXPECT_NE(manual.find(option), std::string::npos) << option;
+  }
+}
+
+}  // namespace
