@@ -115,5 +115,35 @@ TEST(Kernels, AgreeInPerspectiveFromTinyToHugeDistances) {
   expectSameOnEveryTarget(scene, "w from 1e-6 to 1e6");
 }
 
+// Every filter and wrap mode, magnified in front and minified far away, coordinates beyond the image on all sides.
+TEST(Kernels, AgreeOnTextures) {
+  constexpr int kWidth = 37, kHeight = 21;
+  std::mt19937 random(7);
+  std::vector<std::uint8_t> pixels(std::size_t{4} * kWidth * kHeight);
+  for (std::uint8_t& byte : pixels) byte = static_cast<std::uint8_t>(random());
+  const std::vector<glm::vec3> positions{{-6, -1, -1.2F}, {6, -1, -1.2F}, {60, 9, -60}, {-60, 9, -60}};
+  const std::vector<glm::vec3> normals(4, glm::vec3(0.0F, 1.0F, 0.0F));
+  const std::vector<glm::vec2> texcoords{{-1.7F, -0.3F}, {2.6F, 0.1F}, {9.0F, 31.0F}, {-8.0F, 29.0F}};
+  const std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
+  const Part part{0, 2, 0};
+  Vertices vertices;
+  vertices.positions = positions, vertices.normals = normals, vertices.texcoords = texcoords;
+  const Geometry geometry(vertices, indices, std::span(&part, 1));
+  for (const Filter filter : {Filter::kNearest, Filter::kLinear, Filter::kNearestMipNearest,
+                              Filter::kLinearMipNearest, Filter::kNearestMipLinear, Filter::kLinearMipLinear})
+    for (const Wrap wrap : {Wrap::kRepeat, Wrap::kMirroredRepeat, Wrap::kClampToEdge})
+      for (const bool magnified : {false, true}) {
+        const Sampler sampler{wrap, Wrap::kMirroredRepeat, filter, magnified};
+        const Texture texture(kWidth, kHeight, pixels, Texture::Content::kSrgb, sampler);
+        Scene scene({true, 90.0F, 90.0F, 0.5F, 100.0F, 151, 90});
+        scene.draws[0].geometry = &geometry;
+        scene.materials[0].baseColorTexture = &texture;
+        scene.materials[0].unlit = true;
+        scene.materials[0].doubleSided = true;
+        scene.frame.samples = magnified ? 1 : 4;
+        expectSameOnEveryTarget(scene, "textures");
+      }
+}
+
 }  // namespace
 }  // namespace limn::raster::test
