@@ -49,6 +49,7 @@ scene::Mesh subset(const scene::Mesh& mesh, const std::vector<Index>& vertices) 
   scene::Mesh out;
   out.name = mesh.name;
   out.origin = mesh.origin;
+  out.scale = mesh.scale;
   out.weights = mesh.weights;
   out.positions = gathered(mesh.positions, vertices);
   out.normals = gathered(mesh.normals, vertices);
@@ -139,10 +140,27 @@ scene::Mesh coarsenMesh(const scene::Mesh& fine, const Settings& settings, Worke
   return coarse;
 }
 
+std::vector<std::size_t> shareTriangles(const std::vector<scene::Mesh>& meshes, std::size_t triangles) {
+  double all = 0.0;
+  for (const scene::Mesh& mesh : meshes) all += static_cast<double>(mesh.indices.size() / 3);
+  std::vector<std::size_t> shares;
+  for (const scene::Mesh& mesh : meshes) {
+    const std::size_t own = mesh.indices.size() / 3;
+    const double share = all > 0.0 ? static_cast<double>(triangles) * static_cast<double>(own) / all : 0.0;
+    shares.push_back(own == 0 ? 0 : std::max<std::size_t>(4, static_cast<std::size_t>(share)));
+  }
+  return shares;
+}
+
 void fitMesh(const scene::Mesh& fine, scene::Mesh& coarse, Workers& workers, Report* report,
              const Progress& progress) {
   require(fine.indices.size() >= 3 && coarse.indices.size() >= 3, "meshes with triangles");
-  const Fine prepared(fine, workers);
+  scene::Mesh placed;
+  placed.normals = fine.normals;
+  placed.indices = fine.indices;
+  for (const vec3& p : fine.positions)
+    placed.positions.emplace_back((fine.origin + fine.scale * dvec3(p) - coarse.origin) / coarse.scale);
+  const Fine prepared(placed, workers);
   tell(progress, 0.0, kSimplified, 1.0);
   FitSettings settings;
   settings.moveCorners = false;

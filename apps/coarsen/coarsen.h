@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "apps/coarsen/guard.h"
 #include "apps/scene/scene.h"
@@ -27,7 +28,10 @@ using Progress = std::function<void(double)>;
 scene::Mesh coarsenMesh(const scene::Mesh& fine, const Settings& settings, Workers& workers,
                         Report* report = nullptr, const Progress& progress = {});
 
-/// Fits curves for `coarse` as it is to `fine`: nothing of it changes but its fitted curves. Both are in the same space.
+/// How many triangles each mesh of a scene gets of `triangles`: in proportion to what it has, at least 4 and at most that.
+std::vector<std::size_t> shareTriangles(const std::vector<scene::Mesh>& meshes, std::size_t triangles);
+
+/// Fits curves for `coarse` as it is to `fine`: nothing of it changes but its fitted curves. Both are placed by their origins and scales.
 void fitMesh(const scene::Mesh& fine, scene::Mesh& coarse, Workers& workers, Report* report = nullptr,
              const Progress& progress = {});
 

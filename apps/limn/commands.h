@@ -13,5 +13,6 @@ int info(const InfoOptions& options);
 int compare(const CompareOptions& options);
 int verify(const VerifyOptions& options);
 int models();
+int coarsen(const CoarsenOptions& options);
 
 }  // namespace limn::program

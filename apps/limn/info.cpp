@@ -27,6 +27,17 @@ Json topologyJson(const scene::Mesh& mesh) {
           {"closed", report.boundaryEdges + report.nonManifoldEdges == 0}};
 }
 
+/// Null where the mesh has none.
+Json curvesJson(const scene::Mesh& mesh) {
+  if (mesh.curves.empty()) return nullptr;
+  const std::size_t bytes =
+      sizeof(scene::StoredVector) * (mesh.curves.ends.size() + mesh.curves.centers.size());
+  return {
+      {"edges", mesh.curves.ends.size() / 2},
+      {"bytes", bytes},
+      {"bytes_per_triangle", static_cast<double>(bytes) / static_cast<double>(mesh.curves.centers.size())}};
+}
+
 Json meshJson(const scene::Mesh& mesh) {
   Json attributes = Json::array({"positions", "normals"});
   if (!mesh.texcoords.empty()) attributes.push_back("texcoords");
@@ -39,6 +50,7 @@ Json meshJson(const scene::Mesh& mesh) {
           {"attributes", attributes},
           {"morph_targets", mesh.targets.size()},
           {"skinned", !mesh.skinning.empty()},
+          {"fitted_curves", curvesJson(mesh)},
           {"topology", topologyJson(mesh)}};
 }
 
@@ -128,6 +140,10 @@ void printMesh(const Json& mesh, std::size_t index) {
             << counted(t["points"], "point", "points") << ", " << counted(t["edges"], "edge", "edges")
             << ", of them " << t["boundary_edges"] << " boundary, " << t["non_manifold_edges"]
             << " non-manifold, " << t["feature_edges"] << " features\n";
+  if (const Json& curves = mesh["fitted_curves"]; !curves.is_null())
+    std::cout << "    fitted curves: " << counted(curves["edges"], "edge", "edges") << ", "
+              << counted(curves["bytes"], "byte", "bytes") << ", " << curves["bytes_per_triangle"]
+              << " per triangle\n";
   if (t["degenerate_triangles"] != 0)
     std::cout << "    " << counted(t["degenerate_triangles"], "triangle", "triangles") << " without area\n";
   if (t["opposed_triangles"] != 0)

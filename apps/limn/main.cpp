@@ -30,6 +30,8 @@ int run(int count, const char* const* arguments) {
       return verify(line.verify);
     case Command::kModels:
       return models();
+    case Command::kCoarsen:
+      return coarsen(line.coarsen);
     case Command::kPrinted:
       return kDone;
   }

@@ -285,6 +285,33 @@ CLI::App* addRefine(CLI::App& app, RefineOptions& o) {
   return refine;
 }
 
+CLI::App* addCoarsen(CLI::App& app, CoarsenOptions& o) {
+  CLI::App* coarsen = app.add_subcommand("coarsen", "a small model with the outline of a fine one");
+  coarsen->add_option("FINE", o.fine, "a .gltf or .glb file, - or builtin:NAME")->required()->type_name("");
+  coarsen->add_option("-o,--output", o.output, "the small model; - is standard output")
+      ->required()
+      ->type_name("SMALL.glb");
+  Group group(*coarsen, "Coarsening");
+  group.add("--triangles", "N", "at most so many triangles in all, at least 4", "",
+            [&o](const std::string& text) {
+              o.triangles = static_cast<std::size_t>(parseInteger(text, 4, 1'000'000'000));
+            });
+  group.add("--coarse", "FILE", "take this model as it is and fit curves to it, instead of simplifying FINE",
+            "", [&o](const std::string& text) { o.coarse = text; });
+  group.add(
+      "--threads", "N", "threads that work; the same bytes for any number", std::to_string(o.threads),
+      [&o](const std::string& text) { o.threads = static_cast<int>(parseInteger(text, 1, kMostThreads)); });
+  group.addFlag("--quiet", "no notes and no progress", o.quiet);
+  coarsen->footer(R"(Examples:
+  limn coarsen statue.glb -o small.glb --triangles 500
+  limn coarsen statue.glb -o mine.glb --coarse low-poly.glb      curves for a mesh of your own
+  limn render small.glb -o small.png
+
+Other viewers show the coarse mesh; limn reads the curves (extension LIMN_fitted_curves).
+)");
+  return coarsen;
+}
+
 /// What to say of arguments that no option takes.
 [[noreturn]] void refuseExtras(const CLI::App& app) {
   std::vector<const CLI::App*> parsed = {&app};
@@ -309,7 +336,7 @@ CLI::App* addRefine(CLI::App& app, RefineOptions& o) {
 
 CommandLine readCommandLine(int count, const char* const* arguments) {
   CommandLine line;
-  line.render.threads = availableThreads();
+  line.render.threads = line.coarsen.threads = availableThreads();
   CLI::App app("limn draws coarse triangle meshes with smooth silhouettes, on the CPU.", "limn");
   app.formatter(std::make_shared<HelpFormatter>());
   app.set_version_flag("--version", versionText);
@@ -331,6 +358,7 @@ CommandLine readCommandLine(int count, const char* const* arguments) {
       ->required()
       ->type_name("");
   line.verify.threads = line.render.threads;
+  const CLI::App* coarsen = addCoarsen(app, line.coarsen);
   const CLI::App* models = app.add_subcommand("models", "the built-in models");
   app.footer(R"(`limn COMMAND --help` tells all about a command.
 
@@ -339,6 +367,7 @@ Examples:
   limn render model.glb -o frames/%04d.png --turntable 36
   limn info model.glb
   limn compare a.png b.png -o difference.png
+  limn coarsen fine.glb -o small.glb --triangles 500
 
 Exit status: 0 done; 1 a fault of limn; 2 usage; 3 bad input; 4 output could not be
 written; 5 images differ; 128+n ended by signal n.
@@ -359,7 +388,7 @@ written; 5 images differ; 128+n ended by signal n.
     if (!app.get_subcommands().empty()) throw UsageError(std::string(error.what()) + "; see limn --help");
     if (!app.remaining().empty()) refuseExtras(app);
     throw UsageError(
-        "name a command: render, refine, info, compare, verify or models; limn --help tells more");
+        "name a command: render, refine, info, compare, coarsen, verify or models; limn --help tells more");
   } catch (const CLI::ArgumentMismatch& error) {
     const std::string text = error.what(), name = text.substr(0, text.find(':'));
     throw UsageError(
@@ -375,6 +404,7 @@ written; 5 images differ; 128+n ended by signal n.
   if (compare->parsed()) line.command = Command::kCompare;
   if (verify->parsed()) line.command = Command::kVerify;
   if (models->parsed()) line.command = Command::kModels;
+  if (coarsen->parsed()) line.command = Command::kCoarsen;
   return line;
 }
 

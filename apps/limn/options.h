@@ -48,14 +48,24 @@ struct VerifyOptions {
   int threads = 1;
 };
 
+struct CoarsenOptions {
+  std::string fine;
+  std::string output;
+  std::optional<std::size_t> triangles;
+  std::optional<std::string> coarse;
+  int threads = 1;
+  bool quiet = false;
+};
+
 struct CommandLine {
-  enum class Command { kRender, kRefine, kInfo, kCompare, kVerify, kModels, kPrinted };
+  enum class Command { kRender, kRefine, kInfo, kCompare, kCoarsen, kVerify, kModels, kPrinted };
   Command command = Command::kPrinted;  ///< kPrinted: help or version, already on standard output
   RenderOptions render;
   RefineOptions refine;
   InfoOptions info;
   CompareOptions compare;
   VerifyOptions verify;
+  CoarsenOptions coarsen;
 };
 
 /// Throws UsageError.

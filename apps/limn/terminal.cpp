@@ -52,13 +52,23 @@ Progress::~Progress() {
   if (shown_) std::fputs("\r\x1b[K", stderr);
 }
 
-void Progress::show(int done, int skipped) {
-  if (!enabled_) return;
+bool Progress::isDue() {
   const Clock::time_point now = Clock::now();
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
-  if (elapsed < 1.0 || (shown_ && std::chrono::duration<double>(now - last_).count() < 0.1)) return;
+  const auto since = [now](Clock::time_point then) {
+    return std::chrono::duration<double>(now - then).count();
+  };
+  if (!enabled_ || since(start_) < 1.0 || (shown_ && since(last_) < 0.1)) return false;
   last_ = now;
-  shown_ = true;
+  return shown_ = true;
+}
+
+void Progress::showPart(double part) {
+  if (isDue()) std::fprintf(stderr, "\r\x1b[Klimn: %.0f %%", 100.0 * part);
+}
+
+void Progress::show(int done, int skipped) {
+  if (!isDue()) return;
+  const double elapsed = std::chrono::duration<double>(last_ - start_).count();
   const double rate = (done - skipped) / elapsed;
   std::array<char, 128> text{};
   std::snprintf(text.data(), text.size(), "\r\x1b[Klimn: %d of %d frames, %.1f per second, %s left", done,

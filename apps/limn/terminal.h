@@ -21,8 +21,13 @@ class Progress {
 
   /// `done` frames of the total are drawn, `skipped` of them were there already.
   void show(int done, int skipped);
+  /// For work that has no frames: `part` of it, 0 to 1, is done.
+  void showPart(double part);
 
  private:
+  /// Whether it is time for another line.
+  bool isDue();
+
   using Clock = std::chrono::steady_clock;
   int total_;
   bool enabled_;

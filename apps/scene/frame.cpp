@@ -26,15 +26,17 @@ double millisecondsSince(Clock::time_point start) {
 struct MeshResources {
   silhouette::Mesh shape;
   silhouette::Topology topology;
+  DecodedCurves curves;
   raster::Geometry geometry;
   silhouette::Refiner refiner;
 
   MeshResources(const Mesh& mesh, Workers& workers)
       : shape{mesh.positions, mesh.normals, mesh.indices},
         topology(shape),
+        curves(decode(mesh.curves, shape, topology)),
         geometry({mesh.positions, mesh.normals, mesh.texcoords, mesh.colors, mesh.tangents}, mesh.indices,
                  mesh.parts),
-        refiner(shape, topology, workers) {}
+        refiner(shape, topology, workers, curves.view()) {}
 };
 
 /// What an instance keeps from frame to frame: its stream, and arrays of its own where it does not merely
@@ -164,7 +166,7 @@ void FrameDrawer::State::place(const Instance& instance, const CameraView& camer
   }
   out.ownShape = instance.deformed() || !similar;
   if (out.ownShape) {
-    if (!out.refiner) out.refiner.emplace(out.shape, shared.topology, workers);
+    if (!out.refiner) out.refiner.emplace(out.shape, shared.topology, workers, shared.curves.view());
     out.refiner->deform(out.shape);
   }
   silhouette::Refiner& refiner = out.ownShape ? *out.refiner : shared.refiner;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "apps/scene/gltf_fitted.h"
 #include "apps/scene/gltf_primitive.h"
 #include "apps/scene/mesh_normals.h"
 
@@ -27,9 +28,12 @@ class MeshReader {
       append(readPrimitive(document_, index_, p, texcoordSet(source.primitives[p]), report_),
              source.primitives[p]);
     }
+    const std::vector<glm::vec3> corners =
+        source.extensions.empty() ? std::vector<glm::vec3>{} : cornerPositions();
     rebase();
     makeMissingNormals();
     mendNormals();
+    readFittedCurves(document_, index_, corners, mesh_);
     readWeights(source);
     giveNotices();
     return std::move(mesh_);
@@ -50,6 +54,14 @@ class MeshReader {
     all.resize(before, filler);
     all.insert(all.end(), more.begin(), more.end());
     all.resize(before + added, filler);
+  }
+
+  std::vector<glm::vec3> cornerPositions() {
+    document_.charge(mesh_.indices.size() * sizeof(glm::vec3), jsonPointer("meshes", index_));
+    std::vector<glm::vec3> corners;
+    corners.reserve(mesh_.indices.size());
+    for (const std::uint32_t vertex : mesh_.indices) corners.push_back(mesh_.positions[vertex]);
+    return corners;
   }
 
   /// The texture coordinates that the base colour wants, or else the first texture that the material has.

@@ -75,15 +75,22 @@ DecodedCurves decode(const StoredCurves& stored, const silhouette::Mesh& mesh,
   return curves;
 }
 
-std::string geometryKey(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices) {
+std::string curvesKey(const StoredCurves& curves, std::span<const glm::vec3> corners) {
   std::vector<std::uint8_t> bytes;
-  bytes.reserve(12 * indices.size());
-  for (const std::uint32_t index : indices)
+  bytes.reserve(12 * corners.size() + 3 * (curves.ends.size() + curves.centers.size()) + 24);
+  const auto append = [&](const glm::vec3& vector) {
     for (int k = 0; k < 3; ++k) {
       // -0 and 0 are one position.
-      const auto bits = std::bit_cast<std::uint32_t>(positions[index][k] + 0.0f);
+      const auto bits = std::bit_cast<std::uint32_t>(vector[k] + 0.0f);
       for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<std::uint8_t>(bits >> shift));
     }
+  };
+  for (const glm::vec3& corner : corners) append(corner);
+  append(curves.endScale);
+  append(curves.centerScale);
+  for (const std::vector<StoredVector>* vectors : {&curves.ends, &curves.centers})
+    for (const StoredVector& vector : *vectors)
+      for (const std::int8_t step : vector) bytes.push_back(static_cast<std::uint8_t>(step));
   return hashBytes(bytes.data(), bytes.size());
 }
 

@@ -46,8 +46,10 @@ DecodedCurves decode(const StoredCurves& stored, const silhouette::Mesh& mesh,
 /// Whether there are two ends for each edge, a centre for each triangle, and scales in range.
 bool fits(const StoredCurves& stored, const silhouette::Mesh& mesh, const silhouette::Topology& topology);
 
-/// What the curves were fitted to: a hash of the corners' positions, in order. 32 hexadecimal digits of XXH3-128 over the
-/// little-endian floats.
-std::string geometryKey(std::span<const glm::vec3> positions, std::span<const std::uint32_t> indices);
+/// Ties curves to what they were fitted for, so that neither a changed mesh nor a damaged byte goes unnoticed: 32
+/// hexadecimal digits of XXH3-128 over the positions of the triangles' corners, three per triangle as
+/// the file has them, the two scales (little-endian floats), and the
+/// bytes of ends and centres.
+std::string curvesKey(const StoredCurves& curves, std::span<const glm::vec3> corners);
 
 }  // namespace limn::scene

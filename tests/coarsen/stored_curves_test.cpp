@@ -76,15 +76,23 @@ TEST(StoredCurves, FitOnlyTheirMesh) {
   EXPECT_FALSE(fits(wrong, shapeOf(mesh), topology));
 }
 
-TEST(StoredCurves, KeyKnowsPositionsAndTheirOrder) {
-  scene::Mesh mesh = builtinMesh("icosphere:1");
-  const std::string key = scene::geometryKey(mesh.positions, mesh.indices);
+TEST(StoredCurves, KeyKnowsPositionsTheirOrderAndEveryByte) {
+  std::vector<glm::vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  scene::StoredCurves curves;
+  curves.ends.assign(6, {1, 2, 3});
+  curves.centers.assign(1, {0, 0, 0});
+  const std::string key = scene::curvesKey(curves, corners);
   EXPECT_EQ(key.size(), 32u);
-  mesh.positions[3].x = std::nextafter(mesh.positions[3].x, 9.0f);
-  EXPECT_NE(scene::geometryKey(mesh.positions, mesh.indices), key);
-  mesh = builtinMesh("icosphere:1");
-  std::swap(mesh.indices[0], mesh.indices[1]);
-  EXPECT_NE(scene::geometryKey(mesh.positions, mesh.indices), key);
+  corners[0].x = -0.0f;
+  EXPECT_EQ(scene::curvesKey(curves, corners), key);
+  corners[0].x = 1e-38f;
+  EXPECT_NE(scene::curvesKey(curves, corners), key);
+  corners[0].x = 0.0f;
+  std::swap(corners[0], corners[1]);
+  EXPECT_NE(scene::curvesKey(curves, corners), key);
+  std::swap(corners[0], corners[1]);
+  curves.ends[5][2] = 4;
+  EXPECT_NE(scene::curvesKey(curves, corners), key);
 }
 
 }  // namespace

@@ -1,0 +1,134 @@
+// limn coarsen: from a fine model to a small one with the same outline.
+#include <unistd.h>
+
+#include "apps/coarsen/coarsen.h"
+
+#include <cstdio>
+
+#include "apps/coarsen/document.h"
+#include "apps/limn/commands.h"
+#include "apps/limn/terminal.h"
+#include "apps/limn/values.h"
+#include "apps/scene/load.h"
+#include "apps/scene/output_file.h"
+
+namespace limn::program {
+namespace {
+
+void checkOptions(const CoarsenOptions& o) {
+  if (!o.triangles && !o.coarse)
+    throw UsageError("say how small: --triangles N, or --coarse FILE for a mesh of your own");
+  if (o.triangles && o.coarse)
+    throw UsageError("--triangles and --coarse: a mesh of your own stays as it is; name one");
+  if (o.output == "-" && ::isatty(STDOUT_FILENO) == 1)
+    throw UsageError("-o - would print a GLB on the terminal; name a file or a pipe");
+}
+
+/// Where each mesh's share of the progress begins, by triangles.
+std::vector<double> progressOf(const std::vector<scene::Mesh>& meshes) {
+  std::vector<double> from = {0.0};
+  for (const scene::Mesh& mesh : meshes)
+    from.push_back(from.back() + static_cast<double>(mesh.indices.size()));
+  for (double& part : from) part /= std::max(1.0, from.back());
+  return from;
+}
+
+/// What there is to say of all meshes together.
+struct Summary {
+  std::size_t fine = 0, coarse = 0, mended = 0, straightened = 0;
+
+  void add(const coarsen::Report& report, const scene::Mesh& mesh) {
+    fine += report.fineTriangles;
+    coarse += mesh.indices.size() / 3;
+    mended += report.guard.mended;
+    straightened += report.guard.straightened;
+  }
+};
+
+class Coarsening {
+ public:
+  explicit Coarsening(const CoarsenOptions& options)
+      : options_(options), workers_(options.threads), progress_(0, options.quiet) {}
+
+  std::vector<std::uint8_t> run() {
+    const coarsen::Source fine = open(options_.fine);
+    if (!options_.coarse) {
+      const std::vector<std::size_t> shares = coarsen::shareTriangles(fine.scene.meshes, *options_.triangles);
+      std::vector<scene::Mesh> meshes;
+      for (std::size_t m = 0; m < fine.scene.meshes.size(); ++m) {
+        const scene::Mesh& mesh = fine.scene.meshes[m];
+        coarsen::Report report;
+        meshes.push_back(mesh.indices.empty()
+                             ? mesh
+                             : coarsen::coarsenMesh(mesh, {shares[m]}, workers_, &report, part(fine, m)));
+        summary.add(report, meshes.back());
+      }
+      return coarsen::withMeshes(fine, meshes);
+    }
+    coarsen::Source coarse = open(*options_.coarse);
+    if (coarse.scene.meshes.size() != fine.scene.meshes.size())
+      throw scene::InputError(*options_.coarse + ": has " + std::to_string(coarse.scene.meshes.size()) +
+                              " meshes, " + options_.fine + " has " +
+                              std::to_string(fine.scene.meshes.size()) +
+                              "; the two must hold the same meshes in the same order");
+    for (std::size_t m = 0; m < coarse.scene.meshes.size(); ++m) {
+      scene::Mesh& mesh = coarse.scene.meshes[m];
+      if (mesh.indices.empty() || fine.scene.meshes[m].indices.empty()) continue;
+      coarsen::Report report;
+      coarsen::fitMesh(fine.scene.meshes[m], mesh, workers_, &report, part(fine, m));
+      summary.add(report, mesh);
+    }
+    return coarsen::withCurves(coarse, coarse.scene.meshes);
+  }
+
+  Summary summary;
+
+ private:
+  coarsen::Source open(const std::string& model) {
+    coarsen::Source source = coarsen::openSource(model);
+    std::size_t triangles = 0;
+    for (const scene::Mesh& mesh : source.scene.meshes) triangles += mesh.indices.size() / 3;
+    if (triangles == 0) throw scene::InputError(source.name + ": holds no triangles; name a model that does");
+    if (!options_.quiet)
+      for (const std::string& notice : source.scene.notices) printMessage(source.name + ": " + notice);
+    return source;
+  }
+
+  coarsen::Progress part(const coarsen::Source& fine, std::size_t mesh) {
+    const std::vector<double> from = progressOf(fine.scene.meshes);
+    return [this, first = from[mesh], next = from[mesh + 1]](double done) {
+      progress_.showPart(first + (next - first) * done);
+    };
+  }
+
+  const CoarsenOptions& options_;
+  Workers workers_;
+  Progress progress_;
+};
+
+}  // namespace
+
+int coarsen(const CoarsenOptions& options) {
+  checkOptions(options);
+  std::vector<std::uint8_t> file;
+  Summary summary;
+  {
+    Coarsening coarsening(options);
+    file = coarsening.run();
+    summary = coarsening.summary;
+  }
+  if (options.output == "-") {
+    scene::writeAll(STDOUT_FILENO, "standard output", file.data(), file.size());
+  } else {
+    scene::makeDirectoriesOf(options.output);
+    scene::writeFileWhole(options.output, file.data(), file.size());
+  }
+  if (!options.quiet)
+    printMessage(std::to_string(summary.fine) + " triangles to " + std::to_string(summary.coarse) + ", " +
+                 std::to_string(file.size()) + " bytes; " + std::to_string(summary.mended) +
+                 " patches drawn back towards their triangles, " + std::to_string(summary.straightened) +
+                 " left flat");
+  return kDone;
+}
+
+}  // namespace limn::program
