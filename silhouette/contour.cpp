@@ -6,6 +6,11 @@
 #include "raster/base/check.h"
 
 namespace limn::silhouette {
+namespace {
+
+constexpr float kLimit = 1.5f;  // of an end's tilt to the other's
+
+}  // namespace
 
 // In τ = u/(1-u) it is c τ² + b τ + a = 0 with a c <= 0. q = -(b + sgn(b) √(b² - 4ac))/2 adds numbers of one
 // sign; the roots are q/c and a/q, and the signs say which is the one that is not negative.
@@ -27,6 +32,21 @@ float contourParameter(const View& view, const std::array<glm::vec3, 2>& p,
   const glm::dvec3 v1(towardsEye(view, p[0])), v2(towardsEye(view, p[1]));
   const double b = -(glm::dot(v1, glm::dvec3(n[1])) + glm::dot(v2, glm::dvec3(n[0])));
   return static_cast<float>(contourRoot(a, b, c));
+}
+
+CurveOffsets segmentCurve(const SegmentEnd& a, const SegmentEnd& b, bool robust) {
+  const CurveStyle style{Tangents::kCircular, robust};
+  CurveOffsets offsets =
+      edgeCurve(a.place, b.place, {{a.normal, a.normal}, false}, {{b.normal, b.normal}, false}, style);
+  if (!robust) return offsets;
+  const glm::vec3 chord = b.place - a.place;
+  const float tiltA = -glm::dot(chord, a.normal), tiltB = glm::dot(chord, b.normal);
+  const auto limited = [](float own, float other) {
+    return own == 0.0f ? 1.0f : std::clamp(kLimit * other / own, 0.0f, 1.0f);
+  };
+  offsets[0] *= a.trust * limited(tiltA, tiltB);
+  offsets[1] *= b.trust * limited(tiltB, tiltA);
+  return offsets;
 }
 
 }  // namespace limn::silhouette

@@ -37,6 +37,17 @@ double contourRoot(double a, double b, double c);
 float contourParameter(const View& view, const std::array<glm::vec3, 2>& p,
                        const std::array<glm::vec3, 2>& n);
 
+/// An end of a silhouette segment.
+struct SegmentEnd {
+  glm::vec3 place;
+  glm::vec3 normal;  ///< unit
+  float trust = 1;   ///< of the bridge it lies on, there
+};
+
+/// The segment's curve: that of an edge between its ends, bent as far as the bridges at its ends are trusted and, if
+/// `robust`, neither end much more than the other.
+CurveOffsets segmentCurve(const SegmentEnd& a, const SegmentEnd& b, bool robust);
+
 /// Second derivative of curvePoint() by t.
 inline glm::vec3 curveSecondDerivative(const CurveOffsets& d, float t) {
   return 6.0f * ((3.0f * t - 2.0f) * d[0] + (1.0f - 3.0f * t) * d[1]);

@@ -1,4 +1,4 @@
-// Edges that have vertices of their own in a view: samples of a feature curve, and silhouette points.
+// Edges that have vertices of their own in a view: samples of a curve, and silhouette points.
 //
 // Based on: L. Wang et al., "Silhouette Smoothing for Real-Time Rendering of Mesh Surfaces", section III.C-D.
 // Differs in: an edge has a silhouette point for each of its faces, because the normals may differ across it
@@ -30,6 +30,7 @@ using EdgeVertexList = std::array<EdgeVertex, kMaxSideVertices>;
 
 struct CrossedEdge {
   std::uint32_t edge = 0;
+  float alpha = 1;                      ///< share of the curve that is shown
   std::uint32_t segments = 1;        ///< of the curve's polyline
   std::array<bool, 2> crosses{};     ///< per face: it has a silhouette point
   std::array<float, 2> parameter{};  ///< of the silhouette point, or of the vertex that it became

@@ -12,8 +12,10 @@ using glm::dot;
 using glm::vec3;
 
 constexpr std::size_t kEdgesPerBlock = 4096;
-constexpr float kLimit = 1.25f;     // of an end's offset to the other's
-constexpr float kSharpTurn = 0.9f;  // cosine: a polyline that turns more is cut
+constexpr float kLimit = 1.25f;        // of an end's offset to the other's
+constexpr float kSharpTurn = 0.9f;     // cosine: a polyline that turns more is cut,
+constexpr float kSharpestTurn = 0.5f;  // unless it turns everywhere so, as a coarse circle does, up to this
+constexpr float kRegularTurn = 0.4f;   // of 1 - cosine: what both points beside it must have
 
 // The feature edges at a point, if they are two.
 struct Meeting {
@@ -21,29 +23,53 @@ struct Meeting {
   std::uint32_t count = 0;
 };
 
-// The vectors along an edge, away from its end `end`.
-vec3 awayFrom(const Mesh& mesh, const Edge& edge, std::size_t end) {
-  const std::array<std::uint32_t, 2> v = edgeVertices(mesh, edge)[0];
-  return mesh.positions[v[1 - end]] - mesh.positions[v[end]];
+// The feature edges of a mesh, by the points where they meet.
+struct FeatureGraph {
+  const Mesh& mesh;
+  const Topology& topology;
+  std::vector<Meeting> meetings;  // per point
+
+  vec3 awayFrom(std::uint32_t e, std::uint32_t point) const {
+    const Edge& edge = topology.edges()[e];
+    const std::array<std::uint32_t, 2> v = edgeVertices(mesh, edge)[0];
+    const vec3 along = mesh.positions[v[1]] - mesh.positions[v[0]];
+    return edge.point[0] == point ? along : -along;
+  }
+  std::uint32_t otherPoint(std::uint32_t e, std::uint32_t point) const {
+    const Edge& edge = topology.edges()[e];
+    return edge.point[edge.point[0] == point ? 1 : 0];
+  }
+  // Cosine of the turn at a point; -1 where the polyline ends.
+  float turn(std::uint32_t point) const {
+    const Meeting& meeting = meetings[point];
+    if (meeting.count != 2) return -1.0f;
+    const vec3 to = -awayFrom(meeting.edges[0], point), on = awayFrom(meeting.edges[1], point);
+    return dot(to, on) / std::sqrt(dot(to, to) * dot(on, on));
+  }
+  bool isInside(std::uint32_t point) const;
+  vec3 endOffset(std::uint32_t e, std::uint32_t point) const;
+};
+
+// Whether the polyline goes on smoothly: it turns a little, or as much as it does before and after.
+bool FeatureGraph::isInside(std::uint32_t point) const {
+  const float cosine = turn(point);
+  if (cosine >= kSharpTurn) return true;
+  if (!(cosine >= kSharpestTurn)) return false;
+  for (const std::uint32_t e : meetings[point].edges) {
+    const float beside = turn(otherPoint(e, point));
+    if (beside < kSharpestTurn || 1.0f - beside < kRegularTurn * (1.0f - cosine)) return false;
+  }
+  return true;
 }
 
-// What the curve adds to a third of the edge at its end `end`; zero at corners, open ends and cuts.
-vec3 endOffset(const Mesh& mesh, const Topology& topology, const std::vector<Meeting>& meetings,
-               std::uint32_t e, std::size_t end) {
-  const Edge& edge = topology.edges()[e];
-  const Meeting& meeting = meetings[edge.point[end]];
-  if (meeting.count != 2) return vec3(0.0f);
-  const std::uint32_t otherEdge = meeting.edges[meeting.edges[0] == e ? 1 : 0];
-  const Edge& other = topology.edges()[otherEdge];
-  const vec3 on = awayFrom(mesh, edge, end);
-  const vec3 to = -awayFrom(mesh, other, other.point[0] == edge.point[end] ? 0 : 1);
-  const float along = dot(on, to);
-  if (!(along > 0.0f) || along * along < kSharpTurn * kSharpTurn * dot(on, on) * dot(to, to))
-    return vec3(0.0f);
+// What the curve adds to a third of the edge at an end; zero at corners, open ends and cuts.
+vec3 FeatureGraph::endOffset(std::uint32_t e, std::uint32_t point) const {
+  if (!isInside(point)) return vec3(0.0f);
+  const Meeting& meeting = meetings[point];
+  const vec3 on = awayFrom(e, point), to = -awayFrom(meeting.edges[meeting.edges[0] == e ? 1 : 0], point);
   const vec3 tangent = glm::normalize(circleTangent(to, on));
   const float length = glm::length(on);
-  const float cosine = dot(tangent, on) / length;
-  return (2.0f * length / (1.0f + cosine) * tangent - on) / 3.0f;  // (L)
+  return (2.0f * length / (1.0f + dot(tangent, on) / length) * tangent - on) / 3.0f;  // (L)
 }
 
 // An end does not bend much more than the other, nor the other way; with a straight one it is straight.
@@ -65,11 +91,11 @@ vec3 circleTangent(const vec3& w0, const vec3& w1) {
 void computeFeatureCurves(const Mesh& mesh, const Topology& topology, const Crew& crew,
                           std::vector<CurveOffsets>& curves) {
   const std::vector<Edge>& edges = topology.edges();
-  std::vector<Meeting> meetings(topology.pointCount());
+  FeatureGraph graph{mesh, topology, std::vector<Meeting>(topology.pointCount())};
   for (std::uint32_t e = 0; e < edges.size(); ++e) {
     if (!edges[e].isFeature()) continue;
     for (const std::uint32_t point : edges[e].point) {
-      Meeting& meeting = meetings[point];
+      Meeting& meeting = graph.meetings[point];
       if (meeting.count < 2) meeting.edges[meeting.count] = e;
       ++meeting.count;
     }
@@ -78,8 +104,7 @@ void computeFeatureCurves(const Mesh& mesh, const Topology& topology, const Crew
     for (std::size_t e = begin; e < end; ++e) {
       if (!edges[e].isFeature()) continue;
       const auto edge = static_cast<std::uint32_t>(e);
-      curves[e] =
-          limited(endOffset(mesh, topology, meetings, edge, 0), endOffset(mesh, topology, meetings, edge, 1));
+      curves[e] = limited(graph.endOffset(edge, edges[e].point[0]), graph.endOffset(edge, edges[e].point[1]));
     }
   });
 }

@@ -1,8 +1,8 @@
 // Silhouette curves: the outline of the smooth shape, which crosses triangles instead of following edges.
 //
 // Based on: L. Wang, C. Tu, W. Wang, X. Meng, B. Chan, D. Yan, "Silhouette Smoothing for Real-Time Rendering
-// of Mesh Surfaces", section III. Differs in: what contour.h, crossed_edges.h, feature_curves.h, remesh.h and
-// blocking.h say, one for each of its steps.
+// of Mesh Surfaces", section III. Differs in: what contour.h, crossed_edges.h, feature_curves.h, remesh.h,
+// blocking.h and ring.h say, one for each of its steps.
 //
 // A frame: visible vertices → crossed edges and their silhouette points → silhouette triangles and their
 // segments → lowered points → vertices on edges → pieces. Every stage counts, sums and fills by blocks of
@@ -16,11 +16,12 @@
 #include <numeric>
 
 #include "raster/base/check.h"
-#include "silhouette/blocking.h"
 #include "silhouette/crossed_edges.h"
-#include "silhouette/feature_curves.h"
+#include "silhouette/curve_set.h"
 #include "silhouette/method.h"
 #include "silhouette/patch.h"
+#include "silhouette/ring.h"
+#include "silhouette/writer.h"
 
 namespace limn::silhouette {
 namespace {
@@ -30,20 +31,13 @@ using glm::vec3;
 
 constexpr std::size_t kItemsPerBlock = 4096;
 constexpr std::size_t kTrianglesPerBlock = 256;
-
-// What does not depend on the view.
-struct Prepared {
-  std::vector<EdgeVertices> vertices;  // of every edge
-  std::vector<CurveOffsets> curves;    // bridges and feature curves; zero where an edge stays straight
-  std::vector<std::uint8_t> always;    // edges that are sampled from every viewpoint
-  Blocking blocking;
-};
+constexpr std::array<float, 3> kLinear{};  // normals: what is curved here is the outline
 
 // The curve across a silhouette triangle, from the side that leaves the lone corner to the one that comes back.
 struct Segment {
   bool exists = false;
   std::uint32_t lone = 0;
-  std::array<vec3, 2> ends{};  // before they became vertices near them
+  std::array<SegmentEnd, 2> ends{};  // before they became vertices near them
   std::array<vec2, 2> weights{};
   CurveOffsets offsets{};
   std::uint32_t steps = 1;
@@ -56,6 +50,7 @@ struct Slot {
 
 struct Scratch {
   std::vector<std::uint8_t> visible;       // per vertex of the mesh
+  std::vector<float> alphas;               // per edge: the share of its curve that is shown
   std::vector<std::uint32_t> blockCounts;  // then their prefix sums
   std::vector<CrossedEdge> edges;
   std::vector<std::uint32_t> recordOf;   // per edge: index into edges, or kNone
@@ -93,7 +88,7 @@ void markReplaced(RefinedStream& stream, std::uint32_t triangle) {
 struct Pass {
   const Mesh& mesh;
   const Topology& topology;
-  const Prepared& prepared;
+  const CurveSet& prepared;
   const View& view;
   const Parameters& parameters;
   const Crew& crew;
@@ -101,6 +96,7 @@ struct Pass {
   RefinedStream& stream;
   RefineReport& report;
   PixelBound bound;
+  StreamWriter writer;
 
   void run();
   void findVisible();
@@ -115,6 +111,7 @@ struct Pass {
 
   CrossedEdge crossedEdge(std::uint32_t e);
   Segment segmentOf(std::uint32_t triangle);
+  SegmentEnd segmentEnd(const SideView& side) const;
   void addPlanes(std::uint32_t triangle, const Segment& segment);
   void emitEdge(const CrossedEdge& edge);
   void emitPieces(std::size_t k);
@@ -126,10 +123,8 @@ struct Pass {
   template <class T, class Count, class Fill>
   void collect(std::size_t items, std::vector<T>& out, const Count& count, const Fill& fill);
   std::uint32_t steps(const vec3& p, const vec3& q, const CurveOffsets& offsets);
-  EdgeCurve curveOf(std::uint32_t e) const;
+  EdgeCurve curveOf(const CrossedEdge& record) const;
   SideView sideOf(std::uint32_t triangle, std::size_t side) const;
-  vec3 normalAt(const Origin& origin) const;
-  void writeVertex(std::uint32_t at, const vec3& position, const Origin& origin);
   std::uint32_t firstNew() const { return static_cast<std::uint32_t>(mesh.positions.size()); }
 };
 
@@ -180,16 +175,25 @@ void Pass::findVisible() {
 
 // Lists the edges that have vertices of their own and marks their triangles.
 void Pass::findEdges() {
-  const std::vector<std::uint8_t>& visible = scratch.visible;
-  const auto wanted = [&](std::size_t e) -> std::uint32_t {
-    const EdgeVertices& v = prepared.vertices[e];
-    const bool crossed = visible[v[0][0]] != visible[v[0][1]] || visible[v[1][0]] != visible[v[1][1]];
-    return prepared.always[e] != 0 || (crossed && !topology.edges()[e].nonManifold) ? 1 : 0;
-  };
-  collect(topology.edges().size(), scratch.edges, wanted, [&](std::size_t e, std::uint32_t at) {
+  const RingTest ring{mesh, topology, prepared, view, scratch.visible};
+  const std::vector<Edge>& edges = topology.edges();
+  scratch.alphas.resize(edges.size());
+  const auto wanted = [&](std::size_t e) -> std::uint32_t { return scratch.alphas[e] > 0.0f ? 1 : 0; };
+  crew.forBlocks(edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) {
+      const EdgeVertices& v = prepared.vertices[e];
+      const bool crossed = scratch.visible[v[0][0]] != scratch.visible[v[0][1]] ||
+                           scratch.visible[v[1][0]] != scratch.visible[v[1][1]];
+      const bool whole = prepared.always[e] != 0 || (crossed && !edges[e].nonManifold);
+      scratch.alphas[e] = whole ? 1.0f : ring.alpha(static_cast<std::uint32_t>(e));
+    }
+  });
+  collect(edges.size(), scratch.edges, wanted, [&](std::size_t e, std::uint32_t at) {
     scratch.edges[at] = crossedEdge(static_cast<std::uint32_t>(e));
+    const CrossedEdge& record = scratch.edges[at];
+    if (record.segments == 1 && !record.crosses[0] && !record.crosses[1]) return;
     scratch.recordOf[e] = at;
-    for (const Side& face : topology.edges()[e].faces)
+    for (const Side& face : edges[e].faces)
       if (face.triangle != kNone) markReplaced(stream, face.triangle);
   });
   report.smoothEdges = scratch.edges.size();
@@ -199,11 +203,8 @@ CrossedEdge Pass::crossedEdge(std::uint32_t e) {
   const EdgeVertices& v = prepared.vertices[e];
   CrossedEdge record;
   record.edge = e;
+  record.alpha = scratch.alphas[e];
   record.seam = v[0] != v[1];
-  if (prepared.always[e] != 0) {
-    const EdgeCurve curve = curveOf(e);
-    record.segments = steps(curve.ends[0], curve.ends[1], curve.offsets);
-  }
   for (std::size_t face = 0; face < 2; ++face) {
     const std::array<std::uint32_t, 2>& ends = v[face];
     record.crosses[face] = scratch.visible[ends[0]] != scratch.visible[ends[1]];
@@ -211,6 +212,9 @@ CrossedEdge Pass::crossedEdge(std::uint32_t e) {
       record.parameter[face] = contourParameter(view, {mesh.positions[ends[0]], mesh.positions[ends[1]]},
                                                 {mesh.normals[ends[0]], mesh.normals[ends[1]]});
   }
+  if (prepared.always[e] == 0 && (record.crosses[0] || record.crosses[1])) return record;
+  const EdgeCurve curve = curveOf(record);
+  record.segments = steps(curve.ends[0], curve.ends[1], curve.offsets);
   return record;
 }
 
@@ -245,31 +249,37 @@ Segment Pass::segmentOf(std::uint32_t triangle) {
   if (seen[0] == seen[1] && seen[1] == seen[2]) return segment;
   segment.lone = seen[1] == seen[2] ? 0 : seen[2] == seen[0] ? 1 : 2;
   const std::array<std::uint32_t, 2> sides{segment.lone, (segment.lone + 2) % 3};
-  std::array<vec3, 2> normals;
   for (std::size_t end = 0; end < 2; ++end) {
     const SideView side = sideOf(triangle, sides[end]);
     if (side.edge == nullptr || !side.edge->crosses[side.face]) return segment;
-    segment.ends[end] = curveOf(side.edge->edge).point(side.edge->parameter[side.face]);
+    segment.ends[end] = segmentEnd(side);
     segment.weights[end] = sideWeights(sides[end], side.parameter());
-    normals[end] = glm::normalize(normalAt({triangle, segment.weights[end]}));
   }
   segment.exists = true;
-  const CurveStyle style{Tangents::kCircular, parameters.robust};
-  segment.offsets = edgeCurve(segment.ends[0], segment.ends[1], {{normals[0], normals[0]}, false},
-                              {{normals[1], normals[1]}, false}, style);
-  segment.steps = steps(segment.ends[0], segment.ends[1], segment.offsets);
+  segment.offsets = segmentCurve(segment.ends[0], segment.ends[1], parameters.robust);
+  segment.steps = steps(segment.ends[0].place, segment.ends[1].place, segment.offsets);
   return segment;
+}
+
+SegmentEnd Pass::segmentEnd(const SideView& side) const {
+  const std::uint32_t e = side.edge->edge;
+  const float t = side.edge->parameter[side.face];
+  const std::array<std::uint32_t, 2>& v = prepared.vertices[e][side.face];
+  const vec3 normal = (1.0f - t) * mesh.normals[v[0]] + t * mesh.normals[v[1]];
+  const float size2 = glm::dot(normal, normal);
+  const vec3 unit = size2 > 1e-12f ? normal / std::sqrt(size2)
+                                   : prepared.faceNormals[topology.edges()[e].faces[side.face].triangle];
+  const std::array<float, 2>& trust = prepared.trust[e];
+  return {curveOf(*side.edge).point(t), unit, (1.0f - t) * trust[0] + t * trust[1]};
 }
 
 // Every point of a concave segment's triangle feels its plane.
 void Pass::addPlanes(std::uint32_t triangle, const Segment& segment) {
-  const vec3 chord = segment.ends[1] - segment.ends[0];
-  const vec3 n1 = glm::normalize(normalAt({triangle, segment.weights[0]}));
-  const vec3 n2 = glm::normalize(normalAt({triangle, segment.weights[1]}));
-  const float strength = concavity(chord, n1, n2);
+  const SegmentEnd &first = segment.ends[0], &last = segment.ends[1];
+  const float strength = concavity(last.place - first.place, first.normal, last.normal);
   if (!(strength > 0.0f)) return;
-  const vec3 normal = glm::normalize(n1 + n2);
-  const vec3 middle = curvePoint(segment.ends[0], segment.ends[1], segment.offsets, 0.5f);
+  const vec3 normal = glm::normalize(first.normal + last.normal);
+  const vec3 middle = curvePoint(first.place, last.place, segment.offsets, 0.5f);
   const vec2 w = 0.5f * (segment.weights[0] + segment.weights[1]);
   const std::array<float, 3> nearness{1.0f - w.x - w.y, w.x, w.y};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -322,7 +332,7 @@ void Pass::placeEdges() {
       const std::array<std::uint32_t, 2>& ends = prepared.vertices[scratch.edges[k].edge][0];
       const std::array<bool, 2> open{scratch.loweredOf[ends[0]] == kNone,
                                      scratch.loweredOf[ends[1]] == kNone};
-      settle(scratch.edges[k], curveOf(scratch.edges[k].edge), open, bound, snap);
+      settle(scratch.edges[k], curveOf(scratch.edges[k]), open, bound, snap);
     }
   });
   auto vertices = static_cast<std::uint32_t>(stream.positions.size());
@@ -340,7 +350,7 @@ void Pass::placeEdges() {
 
 void Pass::emitEdge(const CrossedEdge& record) {
   const Edge& edge = topology.edges()[record.edge];
-  const EdgeCurve curve = curveOf(record.edge);
+  const EdgeCurve curve = curveOf(record);
   EdgeVertexList list;
   const std::size_t count = listVertices(record, list);
   for (std::uint32_t k = 0; k < count; ++k) {
@@ -348,8 +358,8 @@ void Pass::emitEdge(const CrossedEdge& record) {
     for (std::uint32_t face = 0; face < (record.seam ? 2u : 1u); ++face) {
       const Side& side = edge.faces[face];
       const float along = edge.runsBack(face) ? 1.0f - list[k].t : list[k].t;
-      writeVertex(record.firstVertex + face * record.count + k, position,
-                  {side.triangle, sideWeights(side.side, along)});
+      writer.vertex(record.firstVertex + face * record.count + k, position,
+                    {side.triangle, sideWeights(side.side, along)}, kLinear);
     }
   }
 }
@@ -430,10 +440,10 @@ void Pass::emitPieces(std::size_t k) {
       const float t = static_cast<float>(i) / static_cast<float>(segment.steps);
       const std::uint32_t at = slot.vertex + i - 1;
       samples[i - 1] = firstNew() + at;
-      writeVertex(at,
-                  polylineVertex(segment.ends[0], segment.ends[1], segment.offsets, static_cast<int>(i),
-                                 static_cast<int>(segment.steps)),
-                  {triangle, (1.0f - t) * segment.weights[0] + t * segment.weights[1]});
+      writer.vertex(at,
+                    polylineVertex(segment.ends[0].place, segment.ends[1].place, segment.offsets,
+                                   static_cast<int>(i), static_cast<int>(segment.steps)),
+                    {triangle, (1.0f - t) * segment.weights[0] + t * segment.weights[1]}, kLinear);
     }
     cut.samples = std::span(samples).first(segment.steps - 1);
     remesh(outline, cut, view, {mesh.positions, stream.positions}, pieces);
@@ -460,11 +470,11 @@ void Pass::writeCentre(std::uint32_t at, std::uint32_t triangle) {
   for (std::size_t k = 0; k < 3; ++k) {
     patch.corners[k] = mesh.positions[mesh.indices[3 * std::size_t{triangle} + k]];
     const SideView side = sideOf(triangle, k);
-    if (side.edge == nullptr || prepared.always[side.edge->edge] == 0) continue;
-    const CurveOffsets& offsets = prepared.curves[side.edge->edge];
+    if (side.edge == nullptr || side.edge->segments == 1) continue;
+    const CurveOffsets offsets = curveOf(*side.edge).offsets;
     patch.sides[k] = {offsets[side.back ? 1 : 0], offsets[side.back ? 0 : 1]};
   }
-  writeVertex(at, patch.point(third, third, third), {triangle, {third, third}});
+  writer.vertex(at, patch.point(third, third, third), {triangle, {third, third}}, kLinear);
 }
 
 void Pass::cleanUp() {
@@ -483,9 +493,11 @@ std::uint32_t Pass::steps(const vec3& p, const vec3& q, const CurveOffsets& offs
   return count;
 }
 
-EdgeCurve Pass::curveOf(std::uint32_t e) const {
-  const std::array<std::uint32_t, 2>& ends = prepared.vertices[e][0];
-  return {{mesh.positions[ends[0]], mesh.positions[ends[1]]}, prepared.curves[e]};
+EdgeCurve Pass::curveOf(const CrossedEdge& record) const {
+  const std::array<std::uint32_t, 2>& ends = prepared.vertices[record.edge][0];
+  const CurveOffsets& offsets = prepared.curves[record.edge];
+  return {{mesh.positions[ends[0]], mesh.positions[ends[1]]},
+          {record.alpha * offsets[0], record.alpha * offsets[1]}};
 }
 
 SideView Pass::sideOf(std::uint32_t triangle, std::size_t side) const {
@@ -495,23 +507,6 @@ SideView Pass::sideOf(std::uint32_t triangle, std::size_t side) const {
   const Edge& edge = topology.edges()[e];
   const std::size_t face = edge.faces[1].triangle == triangle && edge.faces[1].side == side ? 1 : 0;
   return {&scratch.edges[record], face, edge.runsBack(face)};
-}
-
-// The weighted mean of the corners' normals; where they cancel, the face's.
-vec3 Pass::normalAt(const Origin& origin) const {
-  const std::uint32_t* corner = &mesh.indices[3 * std::size_t{origin.triangle}];
-  const vec2 w = origin.weights;
-  const vec3 normal = (1.0f - w.x - w.y) * mesh.normals[corner[0]] + w.x * mesh.normals[corner[1]] +
-                      w.y * mesh.normals[corner[2]];
-  if (glm::dot(normal, normal) > 1e-12f) return normal;
-  const vec3& a = mesh.positions[corner[0]];
-  return glm::normalize(glm::cross(mesh.positions[corner[1]] - a, mesh.positions[corner[2]] - a));
-}
-
-void Pass::writeVertex(std::uint32_t at, const vec3& position, const Origin& origin) {
-  stream.positions[at] = position;
-  stream.normals[at] = normalAt(origin);
-  stream.origins[at] = origin;
 }
 
 class SilhouetteCurves final : public MethodState {
@@ -527,21 +522,7 @@ class SilhouetteCurves final : public MethodState {
   void prepare(const Parameters& parameters, const Crew& crew) override {
     const Style style{parameters.robust, parameters.features, parameters.boundaries};
     if (isPrepared_ && style == style_) return;
-    const std::vector<Edge>& edges = topology_.edges();
-    computeEdgeCurves(mesh_, topology_, {Tangents::kCircular, parameters.robust}, crew, robust_,
-                      prepared_.curves);
-    computeFeatureCurves(mesh_, topology_, crew, prepared_.curves);
-    prepared_.vertices.resize(edges.size());
-    prepared_.always.assign(edges.size(), 0);
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      CurveOffsets& curve = prepared_.curves[e];
-      prepared_.vertices[e] = edgeVertices(mesh_, edges[e]);
-      if ((edges[e].isFeature() && !parameters.features) || (edges[e].boundary && !parameters.boundaries))
-        curve = {};
-      const bool bends = curve[0] != vec3(0.0f) || curve[1] != vec3(0.0f);
-      prepared_.always[e] = bends && (edges[e].isFeature() || edges[e].boundary) ? 1 : 0;
-    }
-    prepared_.blocking.prepare(mesh_, topology_);
+    prepared_.prepare(mesh_, topology_, parameters, crew);
     style_ = style;
     isPrepared_ = true;
   }
@@ -554,7 +535,17 @@ class SilhouetteCurves final : public MethodState {
       scratch.segmentOf.assign(mesh_.triangleCount(), kNone);
       scratch.loweredOf.assign(mesh_.positions.size(), kNone);
     }
-    Pass pass{mesh_, topology_, prepared_, view, parameters, crew, scratch, stream, report, PixelBound(view)};
+    Pass pass{mesh_,
+              topology_,
+              prepared_,
+              view,
+              parameters,
+              crew,
+              scratch,
+              stream,
+              report,
+              PixelBound(view),
+              StreamWriter(mesh_, parameters.shadingNormals, stream)};
     pass.run();
   }
 
@@ -567,8 +558,7 @@ class SilhouetteCurves final : public MethodState {
   Mesh mesh_;
   const Topology& topology_;
   std::vector<Scratch> scratch_;
-  Prepared prepared_;
-  RobustEnds robust_;
+  CurveSet prepared_;
   Style style_;
   bool isPrepared_ = false;
 };
