@@ -14,9 +14,7 @@
 #define HWY_TARGET_INCLUDE "raster/shading_vector.cpp"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-#include "raster/lighting-inl.h"
-#include "raster/texel-inl.h"
-#include "raster/vector-inl.h"
+#include "raster/fragments-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::raster {
@@ -34,21 +32,16 @@ class Shading {
       : tile_(tile),
         context_(*tile.context),
         lighting_(context_.map, context_.frame.lights),
-        background_(packed(context_.frame.background)) {}
+        background_(packed(context_.frame.background)),
+        fragments_(tile, lighting_) {}
 
   void run() {
     for (int y = 0; y < tile_.height; ++y)
       for (int x = 0; x < tile_.width; x += static_cast<int>(kLanes)) block(x, y);
+    fragments_.finish();
   }
 
  private:
-  // A vector of pixels: what is interpolated at them.
-  struct Block {
-    Points points;
-    Color color;  // of the vertices
-    FootprintVector footprint;
-  };
-
   std::int32_t packed(const glm::vec4& c) const {
     const Encoding e = context_.frame.encoding;
     return static_cast<std::int32_t>(encode(c.x, e) | static_cast<unsigned>(encode(c.y, e)) << 8U |
@@ -81,8 +74,12 @@ class Shading {
       tile_.statistics.pixelsCovered += count;
     }
     store(color, x, y);
-    for (unsigned left = bitsOf(hn::AndNot(done, inside)); left != 0; left &= left - 1)
-      shadePixelScalar(tile_, x + std::countr_zero(left), y);
+    for (unsigned left = bitsOf(hn::AndNot(done, inside)); left != 0; left &= left - 1) {
+      const int lane = std::countr_zero(left);
+      const bool blended = !tile_.blended.empty() && tile_.isBlended[tile_.offset(0, x + lane, y)] != 0;
+      if (blended || tile_.context->samples.size() == 1 || !fragments_.add(x + lane, y))
+        shadePixelScalar(tile_, x + lane, y);
+    }
   }
 
   MI notBlended(int x, int y) const {
@@ -110,7 +107,7 @@ class Shading {
   HWY_INLINE VI colors(int x, int y, VI ids, MI seen, MI& complex) {
     const I d;
     const F f;
-    Block b;
+    Inputs b;
     const VI left = hn::Set(d, (tile_.left + x) * kSubpixels + kOneSample[0].x);
     b.points.px = hn::Add(left, hn::ShiftLeft<kSubpixelBits>(hn::Iota(d, 0)));
     const std::int32_t py = (tile_.top + y) * kSubpixels + kOneSample[0].y;
@@ -138,17 +135,15 @@ class Shading {
       if (isComplex(*material))
         complex = hn::Or(complex, mine);
       else
-        result = hn::IfThenElse(mine, shade(b, *material), result);
+        result = hn::IfThenElse(
+            mine, packedOf(shadePoints(b, *material, lighting_), hn::Set(d, 255), context_.frame.encoding),
+            result);
     }
     return result;
   }
 
-  static bool isComplex(const Material& m) {
-    return m.normalTexture != nullptr || m.emissiveTexture != nullptr;
-  }
-
   // Values of one triangle's planes, where it is seen.
-  HWY_INLINE void interpolate(Block& b, Record& record, const Surface& surface, std::int32_t py, MF where) {
+  HWY_INLINE void interpolate(Inputs& b, Record& record, const Surface& surface, std::int32_t py, MF where) {
     const I d;
     const F f;
     const F4 f4;
@@ -196,23 +191,11 @@ class Shading {
     put(b.footprint.vy, change(a.slopeY[Attributes::kV], v, qy));
   }
 
-  HWY_INLINE VI shade(const Block& b, const Material& m) const {
-    const F f;
-    const glm::vec4& c = m.baseColor;
-    Color base{hn::Mul(hn::Set(f, c.x), b.color.r), hn::Mul(hn::Set(f, c.y), b.color.g),
-               hn::Mul(hn::Set(f, c.z), b.color.b)};
-    if (m.baseColorTexture != nullptr) {
-      const Color texel = sampleVector(m.baseColorTexture->data(), b.footprint);
-      base = {hn::Mul(base.r, texel.r), hn::Mul(base.g, texel.g), hn::Mul(base.b, texel.b)};
-    }
-    const Color lit = m.unlit ? base : lighting_(b.points, base, m);
-    return packedOf(lit, hn::Set(I(), 255), context_.frame.encoding);
-  }
-
   Tile& tile_;
   const FrameContext& context_;
   Lighting lighting_;
   std::int32_t background_;
+  Fragments fragments_;
 };
 
 void shadeTileVector(Tile& tile) {

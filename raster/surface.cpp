@@ -97,6 +97,13 @@ glm::vec4 baseColorAt(Tile& tile, Record& record, const Surface& surface, Sample
   return base;
 }
 
+PointAttributes attributesAt(Tile& tile, Record& record, SamplePosition at) {
+  const Interpolator value = interpolator(tile, record, at);
+  return {{value(Attributes::kRed), value(Attributes::kGreen), value(Attributes::kBlue),
+           value(Attributes::kAlpha)},
+          value.footprint()};
+}
+
 glm::vec4 shadeAt(Tile& tile, Record& record, SamplePosition at) {
   const FrameContext& context = *tile.context;
   const ScreenMap& map = context.map;

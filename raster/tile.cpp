@@ -82,9 +82,10 @@ std::uint64_t Tile::orderOf(const Record& record) const {
 
 std::size_t Tile::memoryBytes() const {
   return depth.capacity() * sizeof(float) + ids.capacity() * sizeof(std::uint32_t) +
-         records.capacity() * sizeof(Record) + blocks.capacity() * sizeof(VertexBlock) +
-         surfaces.capacity() * sizeof(Surface) + attributes.capacity() * sizeof(Attributes) +
-         colors.capacity() * sizeof(glm::vec4) + isBlended.capacity();
+         records.capacity() * sizeof(Record) + corners.capacity() * sizeof(Corners) +
+         blocks.capacity() * sizeof(VertexBlock) + surfaces.capacity() * sizeof(Surface) +
+         attributes.capacity() * sizeof(Attributes) + colors.capacity() * sizeof(glm::vec4) +
+         isBlended.capacity();
 }
 
 }  // namespace limn::raster

@@ -29,6 +29,7 @@ struct FrameContext {
   const Kernels& kernels;
 };
 
+inline constexpr int kMaxSamples = 8;
 inline constexpr std::uint32_t kNoRecord = 0xffffffffU;
 /// Of an empty sample. What lies beyond the far plane is cut off, so whatever covers a sample is nearer than
 /// nothing, even where its depth is rounding noise.
@@ -90,15 +91,18 @@ class Tile {
     return cornersOf(record, order);
   }
   /// Keeps a record and returns its number.
-  std::uint32_t add(const Record& record) {
+  std::uint32_t add(const Record& record, const Corners& drawn) {
     reserveRecords(1);
     records[recordCount] = record;
+    if (keepsCorners()) corners[recordCount] = drawn;
     return recordCount++;
   }
   /// Makes room for so many more.
   void reserveRecords(std::size_t count) {
     if (records.size() < recordCount + count) records.resize(2 * (recordCount + count));
+    if (keepsCorners() && corners.size() < records.size()) corners.resize(records.size());
   }
+  bool keepsCorners() const { return context->samples.size() > 1; }
   /// Submission order.
   std::uint64_t orderOf(const Record& record) const;
   Surface surfaceOf(std::uint32_t batch, std::uint32_t cluster) const;
@@ -111,6 +115,7 @@ class Tile {
   std::vector<float> depth;        // by offset()
   std::vector<std::uint32_t> ids;  // record that won the sample
   std::vector<Record> records;     // the first recordCount
+  std::vector<Corners> corners;    // of records, in drawing order; only with several samples
   std::uint32_t recordCount = 0;
   std::vector<Attributes> attributes;
   std::vector<Surface> surfaces;    // of the tile's clusters

@@ -47,7 +47,7 @@ void drawTriangle(Tile& tile, TriangleSetup& t) {
         won |= static_cast<unsigned>(wins) << s;
       }
       if (won == 0 || (masked && !passesMask(tile, t, surface, coverage, x, y))) continue;
-      if (id == kNoRecord) id = tile.add(t.record);
+      if (id == kNoRecord) id = tile.add(t.record, t.corners);
       for (unsigned s = 0; won >> s != 0; ++s) {
         if (((won >> s) & 1U) == 0) continue;
         const std::size_t o = tile.offset(static_cast<int>(s), x, y);

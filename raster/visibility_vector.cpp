@@ -125,6 +125,7 @@ class Visibility {
     countFirst(setup.corners);
     tile_.reserveRecords(1);
     tile_.records[tile_.recordCount] = setup.record;
+    if (tile_.keepsCorners()) tile_.corners[tile_.recordCount] = setup.corners;
     drawPixels(setup.corners, setup.x0, setup.y0, setup.x1, setup.y1);
   }
 
@@ -367,11 +368,18 @@ class Visibility {
         std::uint8_t v[3];
         verticesOf(tag, v);
         writeRecord(tag, v, batch.x1[lane], batch.x2[lane], batch.y1[lane], batch.y2[lane]);
+        if (tile_.keepsCorners()) tile_.corners[tile_.recordCount] = microCorners(batch.first + lane);
         batch.id[lane] = static_cast<std::int32_t>(tile_.recordCount++);
       }
       tile_.depth[o] = depth[lane];
       tile_.ids[o] = static_cast<std::uint32_t>(batch.id[lane]);
     }
+  }
+
+  Corners microCorners(std::size_t i) const {
+    Corners c;
+    for (int k = 0; k < 3; ++k) c.x[k] = micro_.x[k][i], c.y[k] = micro_.y[k][i];
+    return c;
   }
 
   bool winsTie(std::uint32_t tag, std::uint32_t other) const {
@@ -387,6 +395,7 @@ class Visibility {
     for (int k = 0; k < 3; ++k) c.x[k] = block_->x[v[k]], c.y[k] = block_->y[v[k]];
     const PlaneBasis basis(c);
     writeRecord(tag, v, basis.x1, basis.x2, basis.y1, basis.y2);
+    if (tile_.keepsCorners()) tile_.corners[tile_.recordCount] = c;
     const int bias = kSubpixels - 1 - tile_.sampleRange.high, low = tile_.sampleRange.low;
     const int x0 = std::max(((std::min({c.x[0], c.x[1], c.x[2]}) + bias) >> kSubpixelBits) - tile_.left, 0);
     const int y0 = std::max(((std::min({c.y[0], c.y[1], c.y[2]}) + bias) >> kSubpixelBits) - tile_.top, 0);
