@@ -29,7 +29,9 @@ class Fragments {
     std::uint32_t ids[kMaxSamples];
     for (int s = 0; s < samples_; ++s) {
       ids[s] = tile_.ids[tile_.offset(s, x, y)];
-      if (ids[s] != kNoRecord && isComplex(*tile_.surfaceOf(tile_.records[ids[s]]).material)) return false;
+      if (tile_.plainMaterial == nullptr && ids[s] != kNoRecord &&
+          isComplex(*tile_.surfaceOf(tile_.records[ids[s]]).material))
+        return false;
     }
     if (pixels_ == kPixels) finish();
     const std::size_t pixel = pixels_++;
@@ -62,7 +64,8 @@ class Fragments {
   static constexpr std::size_t kPixels = 256;
 
   void push(std::size_t pixel, std::uint32_t id, int sample, int count) {
-    const Material* material = tile_.surfaceOf(tile_.records[id]).material;
+    const Material* material = tile_.plainMaterial;
+    if (material == nullptr) material = tile_.surfaceOf(tile_.records[id]).material;
     if (count_ == kLanes || (count_ > 0 && material != material_)) flush();
     material_ = material;
     const SamplePosition first = context_.samples[static_cast<std::size_t>(sample)];
@@ -147,6 +150,7 @@ class Fragments {
     const F f;
     const VF one = hn::Set(f, 1.0F);
     in.color = {one, one, one};
+    if (tile_.plainMaterial != nullptr) return;
     bool needed = material_->baseColorTexture != nullptr;
     for (std::size_t i = 0; i < count_; ++i) needed |= tile_.surfaceOf(tile_.records[id_[i]]).hasColors;
     if (!needed) return;

@@ -51,10 +51,14 @@ class Lighting {
     const Eye eye = eyeOf(p);
     const VF nn = hn::Max(dot3(p.nx, p.nx, p.ny, p.ny, p.nz, p.nz), hn::Set(f, 1e-37F));
     const VF inverse = hn::Div(one, hn::Sqrt(nn));
+    // Sums begin with what need not be added.
+    const bool dark = m.emissive.x == 0.0F && m.emissive.y == 0.0F && m.emissive.z == 0.0F;
     Color color{hn::Set(f, m.emissive.x), hn::Set(f, m.emissive.y), hn::Set(f, m.emissive.z)};
+    bool first = dark;
     for (const Light& light : lights_) {
       const Incoming in = incoming(light, eye);
-      const VF hx = hn::Add(in.x, eye.x), hy = hn::Add(in.y, eye.y), hz = hn::Add(in.z, eye.z);
+      const VF hx = hn::Add(hn::Mul(in.x, eye.length), eye.x), hy = hn::Add(hn::Mul(in.y, eye.length), eye.y);
+      const VF hz = hn::Add(hn::Mul(in.z, eye.length), eye.z);
       const VF nl = hn::Max(hn::Mul(dot3(p.nx, in.x, p.ny, in.y, p.nz, in.z), inverse), zero);
       const VF nh = hn::Max(dot3(p.nx, hx, p.ny, hy, p.nz, hz), zero);
       const VF hh = hn::Max(dot3(hx, hx, hy, hy, hz, hz), hn::Set(f, 1e-12F));
@@ -67,21 +71,24 @@ class Lighting {
         shine = hn::Mul(shine, in.share);
       }
       diffuse = hn::Add(hn::Set(f, light.ambient), diffuse);
+      const bool white = light.color.x == 1.0F && light.color.y == 1.0F && light.color.z == 1.0F;
       const auto add = [&](VF& to, float lightColor, VF baseColor, float specular) {
-        const VF sum = hn::Add(hn::Mul(baseColor, diffuse), hn::Mul(hn::Set(f, specular), shine));
-        to = hn::Add(to, hn::Mul(hn::Set(f, lightColor), sum));
+        VF sum = hn::Add(hn::Mul(baseColor, diffuse), hn::Mul(hn::Set(f, specular), shine));
+        if (!white) sum = hn::Mul(hn::Set(f, lightColor), sum);
+        to = first ? sum : hn::Add(to, sum);
       };
       add(color.r, light.color.x, base.r, m.specular.x);
       add(color.g, light.color.y, base.g, m.specular.y);
       add(color.b, light.color.z, base.b, m.specular.z);
+      first = false;
     }
     return color;
   }
 
  private:
-  // The unit vector to the eye, and where the point is.
+  // A vector to the eye and its length, and where the point is.
   struct Eye {
-    VF x, y, z;
+    VF x, y, z, length;
     VF px, py, pz;
   };
 
@@ -93,15 +100,10 @@ class Lighting {
     const VI cx = hn::Set(d, map_.width * (kSubpixels / 2)), cy = hn::Set(d, map_.height * (kSubpixels / 2));
     const VF x = hn::Mul(hn::ConvertTo(f, hn::Sub(p.px, cx)), hn::Set(f, map_.rayX));
     const VF y = hn::Mul(hn::ConvertTo(f, hn::Sub(cy, p.py)), hn::Set(f, map_.rayY));
-    if (map_.perspective) {
-      const VF square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), one);
-      eye.z = hn::Div(one, hn::Sqrt(square));
-      eye.x = hn::Mul(hn::Neg(x), eye.z);
-      eye.y = hn::Mul(hn::Neg(y), eye.z);
-    } else {
-      eye.x = eye.y = hn::Zero(f);
-      eye.z = one;
-    }
+    eye.x = map_.perspective ? hn::Neg(x) : hn::Zero(f);
+    eye.y = map_.perspective ? hn::Neg(y) : hn::Zero(f);
+    eye.z = one;
+    eye.length = map_.perspective ? hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), one)) : one;
     eye.px = x, eye.py = y, eye.pz = one;
     if (!needsDepth_) return eye;
     if (map_.perspective) {

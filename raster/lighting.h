@@ -2,8 +2,8 @@
 //
 // Based on: J. Blinn, "Models of light reflection for computer synthesized pictures", 1977; light attenuation
 // of glTF's KHR_lights_punctual. Differs in: normals come as n·q of any length, since only their direction
-// counts: (n·h)² = (n·(l+v))² / (|n|²|l+v|²) needs no normalised half vector, and even exponents need no
-// square root.
+// counts; h is l·|v| + v for a vector v to the eye of any length, and (n·h)² / (|n|²|h|²) needs neither of them
+// normalised, so even exponents need no square root.
 #pragma once
 
 #include <algorithm>
@@ -41,13 +41,14 @@ inline glm::vec3 rayAt(const ScreenMap& map, std::int32_t px, std::int32_t py) {
 struct SurfacePoint {
   glm::vec3 normal;    ///< view space, any length
   glm::vec3 position;  ///< view space
-  glm::vec3 toEye;     ///< unit
+  glm::vec3 toEye;     ///< any length, which is
+  float eyeLength;
 };
 
-inline glm::vec3 toEye(const ScreenMap& map, const glm::vec3& ray) {
-  if (!map.perspective) return {0.0F, 0.0F, 1.0F};
-  const float inverse = 1.0F / std::sqrt((ray.x * ray.x + ray.y * ray.y) + 1.0F);
-  return {-ray.x * inverse, -ray.y * inverse, inverse};
+/// Sets a point's vector to the eye.
+inline void setEye(const ScreenMap& map, const glm::vec3& ray, SurfacePoint& p) {
+  p.toEye = map.perspective ? glm::vec3{-ray.x, -ray.y, 1.0F} : glm::vec3{0.0F, 0.0F, 1.0F};
+  p.eyeLength = map.perspective ? std::sqrt((ray.x * ray.x + ray.y * ray.y) + 1.0F) : 1.0F;
 }
 
 /// Direction towards a light and how much of it arrives.
@@ -83,7 +84,9 @@ inline glm::vec3 litColor(const SurfacePoint& p, const glm::vec3& base, const gl
   const float nn = std::max(dot(p.normal, p.normal), 1e-37F), inverse = 1.0F / std::sqrt(nn);
   for (const Light& light : lights) {
     const Incidence in = incidence(light, p.position);
-    const glm::vec3 h{in.toLight.x + p.toEye.x, in.toLight.y + p.toEye.y, in.toLight.z + p.toEye.z};
+    const float length = p.eyeLength;
+    const glm::vec3 h{in.toLight.x * length + p.toEye.x, in.toLight.y * length + p.toEye.y,
+                      in.toLight.z * length + p.toEye.z};
     const float nl = std::max(dot(p.normal, in.toLight) * inverse, 0.0F);
     const float nh = std::max(dot(p.normal, h), 0.0F);
     const float square = (nh * nh) / (nn * std::max(dot(h, h), 1e-12F));

@@ -107,79 +107,101 @@ class Shading {
   HWY_INLINE VI colors(int x, int y, VI ids, MI seen, MI& complex) {
     const I d;
     const F f;
-    Inputs b;
+    Inputs in;
     const VI left = hn::Set(d, (tile_.left + x) * kSubpixels + kOneSample[0].x);
-    b.points.px = hn::Add(left, hn::ShiftLeft<kSubpixelBits>(hn::Iota(d, 0)));
+    in.points.px = hn::Add(left, hn::ShiftLeft<kSubpixelBits>(hn::Iota(d, 0)));
     const std::int32_t py = (tile_.top + y) * kSubpixels + kOneSample[0].y;
-    b.points.py = hn::Set(d, py);
-    b.points.nx = b.points.ny = b.points.nz = hn::Zero(f);
-    b.points.depth = hn::Set(f, 1.0F);
-    VI result = hn::Zero(d);
+    in.points.py = hn::Set(d, py);
+    in.points.nx = in.points.ny = in.points.nz = hn::Zero(f);
+    in.points.depth = in.color.r = in.color.g = in.color.b = hn::Set(f, 1.0F);
+    in.footprint = {hn::Zero(f), hn::Zero(f), hn::Zero(f), hn::Zero(f), hn::Zero(f), hn::Zero(f)};
     const std::uint32_t* row = &tile_.ids[tile_.offset(0, x, y)];
+    if (tile_.plainMaterial != nullptr) {
+      forTriangles(row, ids, seen,
+                   [&](Record& record, MI same) { interpolate(in, record, py, hn::RebindMask(f, same)); });
+      return packedOf(shadePoints(in, *tile_.plainMaterial, lighting_), hn::Set(d, 255),
+                      context_.frame.encoding);
+    }
     // Usually all triangles of the block have one material; else one material is shaded after the other.
+    VI result = hn::Zero(d);
     for (MI todo = seen; !hn::AllFalse(d, todo);) {
       const Material* material = nullptr;
       MI mine = hn::FirstN(d, 0);
-      for (MI rest = todo; !hn::AllFalse(d, rest);) {
-        const std::uint32_t id = row[static_cast<std::size_t>(hn::FindFirstTrue(d, rest))];
-        const MI same = hn::And(hn::Eq(ids, hn::Set(d, static_cast<std::int32_t>(id))), rest);
-        rest = hn::AndNot(same, rest);
-        Record& record = tile_.records[id];
+      forTriangles(row, ids, todo, [&](Record& record, MI same) {
         const Surface surface = tile_.surfaceOf(record);
         if (material == nullptr) material = surface.material;
-        if (surface.material != material) continue;
+        if (surface.material != material) return;
         mine = hn::Or(mine, same);
-        if (!isComplex(*material)) interpolate(b, record, surface, py, hn::RebindMask(f, same));
-      }
+        if (isComplex(*material)) return;
+        interpolate(in, record, py, hn::RebindMask(f, same));
+        if (material->baseColorTexture != nullptr || surface.hasColors)
+          interpolateAttributes(in, record, surface, py, hn::RebindMask(f, same));
+        else
+          in.color = {hn::Set(f, 1.0F), hn::Set(f, 1.0F), hn::Set(f, 1.0F)};
+      });
       todo = hn::AndNot(mine, todo);
-      if (isComplex(*material))
+      if (isComplex(*material)) {
         complex = hn::Or(complex, mine);
-      else
-        result = hn::IfThenElse(
-            mine, packedOf(shadePoints(b, *material, lighting_), hn::Set(d, 255), context_.frame.encoding),
-            result);
+        continue;
+      }
+      const Color color = shadePoints(in, *material, lighting_);
+      result = hn::IfThenElse(mine, packedOf(color, hn::Set(d, 255), context_.frame.encoding), result);
     }
     return result;
   }
 
+  // Calls body(record, lanes) for every triangle that is seen in some lanes of a block.
+  template <class Body>
+  HWY_INLINE void forTriangles(const std::uint32_t* row, VI ids, MI seen, const Body& body) {
+    const I d;
+    while (!hn::AllFalse(d, seen)) {
+      const std::uint32_t id = row[static_cast<std::size_t>(hn::FindFirstTrue(d, seen))];
+      const MI same = hn::And(hn::Eq(ids, hn::Set(d, static_cast<std::int32_t>(id))), seen);
+      seen = hn::AndNot(same, seen);
+      body(tile_.records[id], same);
+    }
+  }
+
   // Values of one triangle's planes, where it is seen.
-  HWY_INLINE void interpolate(Inputs& b, Record& record, const Surface& surface, std::int32_t py, MF where) {
+  HWY_INLINE void interpolate(Inputs& b, const Record& record, std::int32_t py, MF where) {
     const I d;
     const F f;
-    const F4 f4;
-    const float rise = static_cast<float>(py - record.y0);
     const VF dx = hn::ConvertTo(f, hn::Sub(b.points.px, hn::Set(d, record.x0)));
-    alignas(16) float row[4];
-    hn::Store(hn::Add(hn::Load(f4, record.origin), hn::Mul(hn::Load(f4, record.slopeY), hn::Set(f4, rise))),
-              f4, row);
-    const auto value = [&](int i) {
-      return hn::Add(hn::Set(f, row[i]), hn::Mul(hn::Set(f, record.slopeX[i]), dx));
+    const VF dy = hn::Set(f, static_cast<float>(py - record.y0));
+    const auto value = [&](int i, VF otherwise) {
+      const VF start = hn::Add(hn::Set(f, record.origin[i]), hn::Mul(hn::Set(f, record.slopeY[i]), dy));
+      return hn::IfThenElse(where, hn::Add(start, hn::Mul(hn::Set(f, record.slopeX[i]), dx)), otherwise);
     };
-    b.points.nx = hn::IfThenElse(where, value(0), b.points.nx);
-    b.points.ny = hn::IfThenElse(where, value(1), b.points.ny);
-    b.points.nz = hn::IfThenElse(where, value(2), b.points.nz);
-    const bool textured = surface.material->baseColorTexture != nullptr;
-    if (!textured && !surface.hasColors) {
-      if (lighting_.needsDepth()) b.points.depth = hn::IfThenElse(where, value(3), b.points.depth);
-      b.color = {hn::Set(f, 1.0F), hn::Set(f, 1.0F), hn::Set(f, 1.0F)};
-      return;
-    }
-    const VF depth = value(3);
-    b.points.depth = hn::IfThenElse(where, depth, b.points.depth);
-    const bool perspective = context_.map.perspective;
-    const VF w = perspective ? hn::Div(hn::Set(f, 1.0F), depth) : hn::Set(f, 1.0F);
+    b.points.nx = value(0, b.points.nx);
+    b.points.ny = value(1, b.points.ny);
+    b.points.nz = value(2, b.points.nz);
+    if (lighting_.needsDepth()) b.points.depth = value(3, b.points.depth);
+  }
+
+  // The same of texture coordinates and vertex colours, perspective-correct: Interpolator of surface.cpp.
+  HWY_INLINE void interpolateAttributes(Inputs& b, Record& record, const Surface& surface, std::int32_t py,
+                                        MF where) {
+    const I d;
+    const F f;
+    const bool perspective = context_.map.perspective,
+               textured = surface.material->baseColorTexture != nullptr;
+    const VF dx = hn::ConvertTo(f, hn::Sub(b.points.px, hn::Set(d, record.x0)));
+    const float rise = static_cast<float>(py - record.y0);
+    const auto plane = [&](float origin, float slopeX, float slopeY) {
+      return hn::Add(hn::Set(f, origin + slopeY * rise), hn::Mul(hn::Set(f, slopeX), dx));
+    };
+    const VF one = hn::Set(f, 1.0F);
+    const VF w =
+        perspective ? hn::Div(one, plane(record.origin[3], record.slopeX[3], record.slopeY[3])) : one;
     const Attributes& a = attributesOf(tile_, record);
-    const auto attribute = [&](int i) {
-      const VF start = hn::Set(f, a.origin[i] + a.slopeY[i] * rise);
-      return hn::Mul(hn::Add(start, hn::Mul(hn::Set(f, a.slopeX[i]), dx)), w);
-    };
+    const auto value = [&](int i) { return hn::Mul(plane(a.origin[i], a.slopeX[i], a.slopeY[i]), w); };
     const auto put = [&](VF& to, VF v) { to = hn::IfThenElse(where, v, to); };
-    put(b.color.r, surface.hasColors ? attribute(Attributes::kRed) : hn::Set(f, 1.0F));
-    put(b.color.g, surface.hasColors ? attribute(Attributes::kGreen) : hn::Set(f, 1.0F));
-    put(b.color.b, surface.hasColors ? attribute(Attributes::kBlue) : hn::Set(f, 1.0F));
+    put(b.color.r, surface.hasColors ? value(Attributes::kRed) : one);
+    put(b.color.g, surface.hasColors ? value(Attributes::kGreen) : one);
+    put(b.color.b, surface.hasColors ? value(Attributes::kBlue) : one);
     if (!textured) return;
     const float qx = perspective ? record.slopeX[3] : 0.0F, qy = perspective ? record.slopeY[3] : 0.0F;
-    const VF u = attribute(Attributes::kU), v = attribute(Attributes::kV);
+    const VF u = value(Attributes::kU), v = value(Attributes::kV);
     const VF scale = hn::Mul(w, hn::Set(f, static_cast<float>(kSubpixels)));
     const auto change = [&](float slope, VF at, float q) {
       return hn::Mul(hn::Sub(hn::Set(f, slope), hn::Mul(at, hn::Set(f, q))), scale);

@@ -126,7 +126,7 @@ glm::vec4 shadeAt(Tile& tile, Record& record, SamplePosition at) {
     emissive = {emissive.x * texel.x, emissive.y * texel.y, emissive.z * texel.z};
   }
   const glm::vec3 ray = rayAt(map, at.x, at.y);
-  p.toEye = toEye(map, ray);
+  setEye(map, ray, p);
   const float depth = map.viewDepth(record.value(3, at.x, at.y));
   p.position =
       map.perspective ? glm::vec3{ray.x * depth, ray.y * depth, -depth} : glm::vec3{ray.x, ray.y, -depth};

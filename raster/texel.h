@@ -20,7 +20,7 @@ namespace limn::raster {
 /// One mip level within Texture::Data::texels.
 struct TextureLevel {
   std::int32_t width, height;
-  std::size_t first;  ///< texel
+  std::size_t first;  ///< texel; below 2^29
 };
 
 struct Texture::Data {

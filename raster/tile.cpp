@@ -35,6 +35,13 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
   surfaces.clear();
   for (const std::uint32_t item : clusters)
     surfaces.push_back(surfaceOf(c.front.cluster(item).batch, c.front.cluster(item).cluster));
+  plainMaterial = loose.empty() && !surfaces.empty() ? surfaces[0].material : nullptr;
+  for (const Surface& s : surfaces) {
+    const Material& m = *s.material;
+    const bool textured =
+        m.baseColorTexture != nullptr || m.normalTexture != nullptr || m.emissiveTexture != nullptr;
+    if (&m != plainMaterial || s.hasColors || textured) plainMaterial = nullptr;
+  }
 }
 
 Surface Tile::surfaceOf(std::uint32_t b, std::uint32_t cluster) const {

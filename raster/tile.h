@@ -118,8 +118,9 @@ class Tile {
   std::vector<Corners> corners;    // of records, in drawing order; only with several samples
   std::uint32_t recordCount = 0;
   std::vector<Attributes> attributes;
-  std::vector<Surface> surfaces;    // of the tile's clusters
-  std::vector<VertexBlock> blocks;  // of the tile's clusters
+  std::vector<Surface> surfaces;            // of the tile's clusters
+  const Material* plainMaterial = nullptr;  // if all have it, without textures or vertex colours
+  std::vector<VertexBlock> blocks;          // of the tile's clusters
   std::span<const std::uint32_t> clusters, loose, blended;
   std::vector<glm::vec4>
       colors;  // colour · alpha, alpha, by offset(): of pixels that something is blended over
