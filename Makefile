@@ -11,7 +11,7 @@ CHECK_PACKAGES := clang clang-format clang-tidy libclang-rt-14-dev assimp-testmo
 # What `make bench` needs besides: gnuplot draws its pictures, Mesa's OSMesa is the peer in the race.
 BENCH_PACKAGES := gnuplot-nox python3 libgl-dev libosmesa6
 
-.PHONY: help build demo pictures check check-all bench format packages check-packages bench-packages
+.PHONY: help build demo pictures check check-all bench fuzz format packages check-packages bench-packages
 
 help:
 	@echo "make demo       install what is missing, build, draw the demonstration frames into out/"
@@ -19,6 +19,7 @@ help:
 	@echo "make check      formatting, clang-tidy, the tests with g++ and clang++, the sanitizers"
 	@echo "make check-all  the full matrix: compilers, optimisation levels, long fuzzing"
 	@echo "make bench      the benchmarks"
+	@echo "make fuzz       hostile models for FUZZ_SECONDS (60); what it finds goes to build/fuzz"
 
 # $(call install,LIST): quick where everything is there.
 define install
@@ -81,3 +82,11 @@ bench: bench-packages
 	@mkdir -p bench/results
 	@bench/race.py --json bench/results/race.json | tee bench/results/race.md
 	@bench/linear.py --picture bench/results/linear.svg | tee bench/results/linear.md
+
+# What a run finds is mended, and the input kept in tests/fuzz/corpus, where every later run starts.
+FUZZ_SECONDS ?= 60
+fuzz: check-packages
+	@$(call compile,fuzz,limn_fuzz_loader)
+	@mkdir -p build/fuzz/found
+	build/fuzz/tests/fuzz/limn_fuzz_loader -max_total_time=$(FUZZ_SECONDS) -max_len=65536 -timeout=5 \
+	  -rss_limit_mb=1024 -artifact_prefix=build/fuzz/ build/fuzz/found tests/fuzz/corpus

@@ -90,12 +90,12 @@ Scene makeDemo() {
   addMaterial(scene, {0.72f, 0.13f, 0.10f}, 0.45f, 48);
   addMaterial(scene, {0.20f, 0.52f, 0.24f}, 0.25f, 24);
   addMaterial(scene, {0.78f, 0.74f, 0.68f}, 0.60f, 96);
-  addObject(scene, "plate", plate(), placed({0, 0, 0}, 1), 0);
-  addObject(scene, "pawn", pawn(12, 1), placed({-0.25, 0, 1.15}, 0.95), 1);
-  addObject(scene, "knot", knot(24, 6), placed({0, 1.55, -1.15}, 0.44), 2);
-  addObject(scene, "sphere", icosphere(1), placed({-1.6, 0.72, 0.1}, 0.74), 3);
-  addObject(scene, "cone", cone70(), placed({1.75, 0, -0.35}, 1.4), 4);
-  addObject(scene, "ring", torus(12, 8), placed({1.1, 0.262, 1.45}, 0.655, turnAbout({1, 0, 0}, 90)), 5);
+  addObject(scene, "plate", plate(), placed({0, 0, 0}, 0.82), 0);
+  addObject(scene, "pawn", pawn(12, 1), placed({-0.35, 0, 1.2}, 1.05), 1);
+  addObject(scene, "knot", knot(30, 6), placed({-0.1, 1.56, -1.05}, 0.44), 2);
+  addObject(scene, "sphere", icosphere(1), placed({-1.45, 0.72, 0.15}, 0.74), 3);
+  addObject(scene, "cone", cone70(), placed({1.5, 0, -0.1}, 1.3), 4);
+  addObject(scene, "ring", torus(12, 8), placed({0.95, 0.22, 1.2}, 0.55, turnAbout({1, 0, 0}, 90)), 5);
   scene.materials.emplace_back();
   return scene;
 }

@@ -29,10 +29,19 @@ std::vector<std::uint8_t> decodedOrRefused(const GltfDocument& document, const s
   return std::move(*bytes);
 }
 
+// Refuses what a file must not name, whether it is there or not.
+void checkUri(const GltfDocument& document, const std::string& uri, const Folder& folder,
+              const std::string& place) {
+  if (!folder) {
+    document.refuse(place, "names a file, but a model on standard input has none beside it; embed it");
+  }
+  const std::string problem = uriProblem(uri);
+  if (!problem.empty()) document.refuse(place, inQuotes(uri) + " " + problem);
+}
+
 fs::path pathOrRefused(const GltfDocument& document, const std::string& uri, const Folder& folder,
                        const std::string& place) {
-  if (!folder)
-    document.refuse(place, "names a file, but a model on standard input has none beside it; embed it");
+  checkUri(document, uri, folder, place);
   std::string problem;
   fs::path path = resolveUri(uri, *folder, problem);
   if (!problem.empty()) document.refuse(place, inQuotes(uri) + " " + problem);
@@ -75,8 +84,11 @@ GltfImage readImage(const GltfDocument& document, std::size_t index, const json&
     image.bufferView = view->get<int>();
   else if (isDataUri(uri))
     image.embedded = decodedOrRefused(document, uri, place);
-  else if (described.contains("uri"))
-    image.path = pathOrRefused(document, uri, folder, place);
+  else if (described.contains("uri")) {
+    checkUri(document, uri, folder, place);
+    image.uri = uri;
+    image.folder = *folder;
+  }
   return image;
 }
 
@@ -133,11 +145,16 @@ void GltfDocument::refuse(const std::string& place, const std::string& what) con
   throw InputError(file_ + ": " + place + ": " + what);
 }
 
-void GltfDocument::charge(std::size_t bytes, const std::string& place) {
-  if (budget_.take(bytes)) return;
+void GltfDocument::checkRoom(std::size_t bytes, const std::string& place) const {
+  if (bytes <= budget_.left()) return;
   refuse(place, "needs " + std::to_string(bytes >> 20) + " MiB more where " +
                     std::to_string(budget_.left() >> 20) +
-                    " MiB are left to a file of this size; is the count right?");
+                    " MiB are left to a file of this size; is the count or size right?");
+}
+
+void GltfDocument::charge(std::size_t bytes, const std::string& place) {
+  checkRoom(bytes, place);
+  budget_.take(bytes);
 }
 
 }  // namespace limn::scene

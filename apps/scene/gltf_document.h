@@ -25,12 +25,8 @@ class Budget {
   /// For a model whose file and external files hold `inputBytes`.
   explicit Budget(std::size_t inputBytes) : left_(kBase + kPerByte * inputBytes) {}
 
-  /// False if that is more than is left.
-  bool take(std::size_t bytes) {
-    if (bytes > left_) return false;
-    left_ -= bytes;
-    return true;
-  }
+  /// `bytes` <= left().
+  void take(std::size_t bytes) { left_ -= bytes; }
   std::size_t left() const { return left_; }
 
  private:
@@ -48,7 +44,8 @@ struct GltfBuffer {
 };
 
 struct GltfImage {
-  std::filesystem::path path;          ///< of an external file, checked, not yet read
+  std::string uri;  ///< of an external file, below `folder`, not yet looked for
+  std::filesystem::path folder;
   std::vector<std::uint8_t> embedded;  ///< of a data URI
   int bufferView = -1;
 };
@@ -64,6 +61,8 @@ class GltfDocument {
   [[noreturn]] void refuse(const std::string& place, const std::string& what) const;
   /// Takes `bytes` from the budget or refuses the file.
   void charge(std::size_t bytes, const std::string& place);
+  /// Refuses the file if `bytes` are not left, without taking them.
+  void checkRoom(std::size_t bytes, const std::string& place) const;
   void notice(std::string sentence) { notices.push_back(std::move(sentence)); }
 
   tinygltf::Model model;  ///< without buffers, images and whatever limn does not know

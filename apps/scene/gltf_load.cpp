@@ -4,6 +4,7 @@
 
 #include "apps/scene/gltf_accessor.h"
 #include "apps/scene/gltf_document.h"
+#include "apps/scene/gltf_material.h"
 #include "apps/scene/gltf_mesh.h"
 #include "apps/scene/gltf_nodes.h"
 #include "apps/scene/gltf_uri.h"
@@ -37,8 +38,11 @@ std::string contentHash(const std::string& fileHash, const GltfDocument& documen
   for (const GltfBuffer& buffer : document.buffers)
     if (!buffer.owned.empty()) hashes += hashBytes(buffer.owned.data(), buffer.owned.size());
   for (const GltfImage& image : document.images) {
-    if (image.path.empty()) continue;
-    if (const auto bytes = readFileBytes(image.path, kLargestImageFile))
+    if (image.uri.empty()) continue;
+    std::string problem;
+    const std::filesystem::path path = resolveUri(image.uri, image.folder, problem);
+    if (!problem.empty()) continue;  // where it is needed, the loader refuses it
+    if (const auto bytes = readFileBytes(path, kLargestImageFile))
       hashes += hashBytes(bytes->data(), bytes->size());
   }
   return hashes == fileHash ? fileHash : hashBytes(hashes.data(), hashes.size());
@@ -62,7 +66,7 @@ Scene loadGltf(const std::string& file, std::vector<std::uint8_t> bytes,
   const std::vector<std::uint32_t> nodeOf = readNodes(document, scene);
   readSkins(document, nodeOf, scene);
   readAnimations(document, nodeOf, scene);
-  scene.materials.resize(document.model.materials.size() + 1);
+  readMaterials(document, scene);
   const std::size_t triangles = chargeInstances(document, scene);
   scene.notices = std::move(document.notices);
   if (triangles == 0) scene.notices.emplace_back("The file holds no triangles to draw.");

@@ -9,6 +9,7 @@
 
 #include "apps/scene/gltf_fitted.h"
 #include "apps/scene/gltf_primitive.h"
+#include "apps/scene/gltf_texture.h"
 #include "apps/scene/mesh_normals.h"
 
 namespace limn::scene {
@@ -70,9 +71,9 @@ class MeshReader {
     const tinygltf::Material& material =
         document_.model.materials[static_cast<std::size_t>(primitive.material)];
     const auto& base = material.pbrMetallicRoughness.baseColorTexture;
-    if (base.index >= 0) return base.texCoord;
-    if (material.normalTexture.index >= 0) return material.normalTexture.texCoord;
-    return material.emissiveTexture.index >= 0 ? material.emissiveTexture.texCoord : 0;
+    if (base.index >= 0) return texcoordSetOf(base);
+    if (material.normalTexture.index >= 0) return texcoordSetOf(material.normalTexture);
+    return material.emissiveTexture.index >= 0 ? texcoordSetOf(material.emissiveTexture) : 0;
   }
 
   void append(PrimitiveArrays&& arrays, const tinygltf::Primitive& source) {

@@ -87,20 +87,22 @@ std::optional<std::vector<std::uint8_t>> decodeDataUri(std::string_view uri) {
   return decodeBase64(uri.substr(comma + 1));
 }
 
-fs::path resolveUri(std::string_view uri, const fs::path& folder, std::string& problem) {
+std::string uriProblem(std::string_view uri) {
   const std::string name = percentDecoded(uri);
   const fs::path relative(name);
-  if (name.empty())
-    problem = "names no file";
-  else if (hasScheme(uri) || hasScheme(name))
-    problem = "has a scheme; only files beside the model or below are read";
-  else if (relative.is_absolute() || name.find('\\') != std::string::npos ||
-           name.find('\0') != std::string::npos)
-    problem = "is not a relative path; only files beside the model or below are read";
-  else if (std::find(relative.begin(), relative.end(), "..") != relative.end())
-    problem = "leads upward; only files beside the model or below are read";
-  if (!problem.empty()) return {};
+  if (name.empty()) return "names no file";
+  if (hasScheme(uri) || hasScheme(name)) return "has a scheme; only files beside the model or below are read";
+  const bool isRelative =
+      !relative.is_absolute() && name.find('\\') == std::string::npos && name.find('\0') == std::string::npos;
+  if (!isRelative) return "is not a relative path; only files beside the model or below are read";
+  const bool leadsUp = std::find(relative.begin(), relative.end(), "..") != relative.end();
+  return leadsUp ? "leads upward; only files beside the model or below are read" : "";
+}
 
+fs::path resolveUri(std::string_view uri, const fs::path& folder, std::string& problem) {
+  problem = uriProblem(uri);
+  if (!problem.empty()) return {};
+  const fs::path relative(percentDecoded(uri));
   const fs::path path = folder / relative;
   std::error_code error;
   if (!fs::is_regular_file(path, error))

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,7 +42,10 @@ std::vector<std::uint8_t> encodePng16(const Image16& image, const TextChunks& te
 /// (apps/scene/load.h) naming the file: not a PNG, damaged, or larger than 16384 pixels.
 Image readPng(const std::string& path, TextChunks* texts = nullptr);
 
-/// The same, converted to RGBA with 16 bits per sample (8-bit samples times 257). `is16` says what the file
+/// The same from the bytes of a file; `name` is what messages call it.
+Image decodePng(const std::string& name, std::span<const std::uint8_t> bytes);
+
+/// The same as readPng, converted to RGBA with 16 bits per sample (8-bit samples times 257). `is16` says what the file
 /// has.
 Image16 readPng16(const std::string& path, bool* is16 = nullptr);
 

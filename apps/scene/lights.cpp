@@ -11,7 +11,7 @@ namespace {
 // KHR_lights_punctual gives lux and candela, and a white Lambertian surface reflects 1/pi of what arrives.
 constexpr float kLambert = 0.318309886f;
 // The file has no ambient light; a little keeps what no lamp reaches from turning black.
-constexpr float kFileAmbient = 0.03f * kLambert;
+constexpr float kFileAmbient = 0.03f;
 
 glm::vec3 unitOr(const glm::dvec3& v, const glm::vec3& otherwise) {
   const double square = glm::dot(v, v);
@@ -21,9 +21,9 @@ glm::vec3 unitOr(const glm::dvec3& v, const glm::vec3& otherwise) {
 raster::Light fromFile(const Light& light, const glm::dmat4& lightToView) {
   raster::Light out;
   out.kind = light.kind;
-  out.color = glm::vec3(light.color);
+  out.color = glm::vec3(light.color) * kLambert;  // of highlights too (docs/materials.md)
   out.ambient = kFileAmbient;
-  out.diffuse = kLambert;
+  out.diffuse = 1.0f;
   out.position = glm::vec3(glm::dvec3(lightToView[3]));
   out.direction = unitOr(-glm::dvec3(lightToView[2]), {0.0f, 0.0f, -1.0f});
   out.toLight = -out.direction;

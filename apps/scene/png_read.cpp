@@ -95,12 +95,17 @@ bool readRows(PngReader& reader, png_bytepp rows) {
   throw InputError(path + ": " + what + "; give a whole PNG file of at most 16384x16384 pixels");
 }
 
+std::vector<std::uint8_t> fileOrRefused(const std::string& path) {
+  std::vector<std::uint8_t> file;
+  if (!readFile(path, file)) throw InputError(path + ": cannot be read; is the name right?");
+  return file;
+}
+
 /// Decodes into rows of RGBA with `bits` per sample. `allocate(width, height)` returns the place for all of
 /// them.
 template <class Allocate>
-void decode(const std::string& path, int bits, int& bitDepth, TextChunks* texts, const Allocate& allocate) {
-  std::vector<std::uint8_t> file;
-  if (!readFile(path, file)) throw InputError(path + ": cannot be read; is the name right?");
+void decode(const std::string& path, std::span<const std::uint8_t> file, int bits, int& bitDepth,
+            TextChunks* texts, const Allocate& allocate) {
   if (file.size() < sizeof kSignature || std::memcmp(file.data(), kSignature, sizeof kSignature) != 0)
     refuse(path, "is not a PNG file");
   PngReader reader;
@@ -148,10 +153,12 @@ void collectText(std::string_view type, std::string_view data, TextChunks& texts
 
 }  // namespace
 
-Image readPng(const std::string& path, TextChunks* texts) {
+namespace {
+
+Image decode8(const std::string& name, std::span<const std::uint8_t> bytes, TextChunks* texts) {
   Image image;
   int bitDepth = 0;
-  decode(path, 8, bitDepth, texts, [&](int width, int height) {
+  decode(name, bytes, 8, bitDepth, texts, [&](int width, int height) {
     image.width = width;
     image.height = height;
     image.rgba.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -160,10 +167,20 @@ Image readPng(const std::string& path, TextChunks* texts) {
   return image;
 }
 
+}  // namespace
+
+Image readPng(const std::string& path, TextChunks* texts) {
+  return decode8(path, fileOrRefused(path), texts);
+}
+
+Image decodePng(const std::string& name, std::span<const std::uint8_t> bytes) {
+  return decode8(name, bytes, nullptr);
+}
+
 Image16 readPng16(const std::string& path, bool* is16) {
   Image16 image;
   int bitDepth = 0;
-  decode(path, 16, bitDepth, nullptr, [&](int width, int height) {
+  decode(path, fileOrRefused(path), 16, bitDepth, nullptr, [&](int width, int height) {
     image.width = width;
     image.height = height;
     image.channels = 4;
