@@ -97,7 +97,7 @@ void Mask::draw(const SampleTriangle& triangle, int rowBegin, int rowEnd) {
   std::array<int, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(), [&](int a, int b) { return triangle.y[a] < triangle.y[b]; });
   const auto [top, middle, bottom] = order;
-  const auto& [x, y] = triangle;
+  const auto &x = triangle.x, &y = triangle.y;  // not a structured binding: clang++ 14 cannot capture those
   const int begin = std::clamp(firstRowFrom(y[top]), rowBegin, rowEnd);
   const int end = std::clamp(firstRowFrom(y[bottom]), rowBegin, rowEnd);
   if (begin >= end) return;
