@@ -103,8 +103,11 @@ class Rewriter {
 
   void keepImage(Json& image, std::size_t index) {
     keepView(image, "bufferView");
-    const std::filesystem::path& path = document_.images.at(index).path;
-    if (path.empty()) return;
+    const scene::GltfImage& external = document_.images.at(index);
+    if (external.uri.empty()) return;
+    std::string problem;
+    const std::filesystem::path path = scene::resolveUri(external.uri, external.folder, problem);
+    if (!problem.empty()) return;  // as missing in the copy as it was
     constexpr std::size_t kLargest = std::size_t{1} << 31;
     const std::optional<std::vector<std::uint8_t>> bytes = scene::readFileBytes(path, kLargest);
     if (!bytes) return;  // as missing in the copy as it was
