@@ -2,10 +2,10 @@
 // viewpoint.
 //
 // Based on: C. Dyken, M. Reimers, "Real-time linear silhouette enhancement", 2004.
-// Differs in: where the silhouette crosses a triangle, the inside of the patch is refined too: a fan's chords
-// from the corners to the midpoint are straight and limit the outline. Segment counts come from a tolerance
-// in pixels that holds under perspective (pixel_bound.h); a triangle whose three edges stay straight and
-// whose midpoint stays within the tolerance is passed through as flat.
+// Differs in: segment counts come from a tolerance in pixels that holds under perspective (pixel_bound.h). The inside of
+// a patch is refined to the same tolerance where the paper draws a fan: a fan's chords from the corners to the midpoint
+// are straight and limit the outline (pattern.h; the fan is what is left where that suffices). A triangle that stays
+// within the tolerance of the flat one is passed through as flat.
 //
 // Every edge has one record with its α, curve and segments, from which both its triangles take the same
 // points.
@@ -16,6 +16,7 @@
 #include <numeric>
 
 #include "raster/base/check.h"
+#include "silhouette/edge_clusters.h"
 #include "silhouette/edge_curves.h"
 #include "silhouette/method.h"
 #include "silhouette/patch.h"
@@ -29,15 +30,10 @@ namespace {
 
 using glm::vec3;
 
+constexpr std::size_t kClustersPerBlock = 64;
 constexpr std::size_t kEdgesPerBlock = 4096;
 constexpr std::size_t kWordsPerBlock = 64;  // of 64 triangles each
 constexpr float kThird = 1.0f / 3.0f;
-
-// The inside of a patch blends in over a narrower range of facing than its edges: it matters only where the
-// silhouette crosses.
-constexpr float kInsideShare = 0.2f;
-constexpr std::uint32_t kMaxRows = 32;
-constexpr float kSideOverSpoke = 1.7320508f;  // lengths, in an equilateral triangle
 
 // An edge that bends in this view.
 struct SmoothEdge {
@@ -58,19 +54,15 @@ struct Share {
 };
 
 struct Scratch {
-  std::vector<std::uint32_t> blockCounts;  // smooth edges per block of edges, then their prefix sums
-  std::vector<float> alphas;
+  std::vector<std::uint32_t> blockCounts;  // smooth edges per block of clusters, then their prefix sums
+  std::vector<std::uint64_t> masks;        // per cluster: the edges that bend
+  std::vector<float> alphas;               // per place in the clusters' order, where an edge bends
   std::vector<SmoothEdge> smooth;
-  std::vector<std::uint32_t> recordOf;  // per edge: index into smooth, or kNone
-  std::vector<Share> shares;            // per block of triangles, then prefix sums
-};
-
-// How a triangle is drawn.
-struct Cut {
-  Patch patch;
-  Pattern pattern;
-  std::array<float, 3> alphas{};  // of the sides
-  float inside = 0;               // γ: the inside is the fan's at 0 and the patch's at 1
+  std::vector<std::uint32_t> recordOf;    // per edge: index into smooth, or kNone
+  std::vector<std::uint64_t> candidates;  // bit per triangle: has a smooth edge
+  std::vector<std::uint32_t> firstCut;    // per word of candidates: index into cuts, and their number
+  std::vector<Pattern> cuts;              // per candidate, in order
+  std::vector<Share> shares;              // per block of triangles, then prefix sums
 };
 
 // One view's refinement; all it refers to outlives it.
@@ -78,6 +70,7 @@ struct Pass {
   const Mesh& mesh;
   const Topology& topology;
   const EdgeTest& test;
+  const EdgeClusters& clusters;
   const std::vector<CurveOffsets>& curves;
   const std::vector<vec3>& centers;  // of fitted patches; empty without
   const View& view;
@@ -91,23 +84,27 @@ struct Pass {
 
   void run();
   void classify();
+  void measureEdges();
   void measure(SmoothEdge& smooth);
   void placeEdges();
+  void listCandidates();
   Share decide(std::size_t word);
   void placeTriangles();
   void emitEdge(const SmoothEdge& smooth);
-  void emitTriangle(std::uint32_t triangle, std::uint32_t& vertex, std::uint32_t& face);
+  void emitTriangle(std::uint32_t triangle, const Pattern& pattern, std::uint32_t& vertex,
+                    std::uint32_t& face);
 
   const SmoothEdge* recordOfSide(std::size_t triangle, std::size_t side) const {
     const std::uint32_t record = scratch.recordOf[topology.sideEdges()[3 * triangle + side]];
     return record == kNone ? nullptr : &scratch.smooth[record];
   }
   Patch patchOf(std::size_t triangle) const;
-  Cut cutOf(std::size_t triangle) const;
+  bool passesMidpoint(const Patch& patch, const Pattern& pattern) const;
+  Pattern patternOf(std::size_t triangle, const Patch& patch) const;
 };
 
-void mark(RefinedStream& stream, std::uint32_t triangle) {
-  std::atomic_ref<std::uint64_t>(stream.replaced[triangle / 64])
+void mark(std::vector<std::uint64_t>& bits, std::uint32_t triangle) {
+  std::atomic_ref<std::uint64_t>(bits[triangle / 64])
       .fetch_or(std::uint64_t{1} << (triangle % 64), std::memory_order_relaxed);
 }
 
@@ -116,40 +113,52 @@ void Pass::run() {
   classify();
   report.classifyMs =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  measureEdges();
   placeEdges();
+  listCandidates();
   placeTriangles();
   for (const SmoothEdge& smooth : scratch.smooth) scratch.recordOf[smooth.edge] = kNone;
 }
 
-// Lists the edges with α > 0, in order, and marks their triangles as candidates.
+// Lists the edges that bend visibly, in the order of the clusters, and marks their triangles as candidates.
 void Pass::classify() {
-  const std::size_t edges = topology.edges().size(), blocks = (edges + kEdgesPerBlock - 1) / kEdgesPerBlock;
+  const std::size_t count = clusters.count(), blocks = (count + kClustersPerBlock - 1) / kClustersPerBlock;
   scratch.blockCounts.assign(blocks + 1, 0);
-  scratch.alphas.resize(edges);
-  crew.forBlocks(edges, kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t count = 0;
-    for (std::size_t e = begin; e < end; ++e) {
-      const bool bends = curves[e][0] != vec3(0.0f) || curves[e][1] != vec3(0.0f);
-      scratch.alphas[e] = bends ? test.alpha(view, parameters, e) : 0.0f;
-      if (scratch.alphas[e] > 0.0f) ++count;
+  scratch.masks.resize(count);
+  scratch.alphas.resize(count * kEdgesPerCluster);
+  const EdgeClusters::Eye eye = clusters.eyeOf(view, parameters);
+  crew.forBlocks(count, kClustersPerBlock, [&](std::size_t begin, std::size_t end) {
+    int bending = 0;
+    for (std::size_t c = begin; c < end; ++c) {
+      const std::span<float> alphas =
+          std::span(scratch.alphas).subspan(c * kEdgesPerCluster, kEdgesPerCluster);
+      scratch.masks[c] = clusters.classify(c, eye, test, parameters, alphas);
+      bending += std::popcount(scratch.masks[c]);
     }
-    scratch.blockCounts[begin / kEdgesPerBlock + 1] = count;
+    scratch.blockCounts[begin / kClustersPerBlock + 1] = static_cast<std::uint32_t>(bending);
   });
   std::partial_sum(scratch.blockCounts.begin(), scratch.blockCounts.end(), scratch.blockCounts.begin());
   scratch.smooth.resize(scratch.blockCounts[blocks]);
   report.smoothEdges = scratch.smooth.size();
-  crew.forBlocks(edges, kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t record = scratch.blockCounts[begin / kEdgesPerBlock];
-    for (std::size_t e = begin; e < end; ++e) {
-      if (scratch.alphas[e] <= 0.0f) continue;
-      SmoothEdge& smooth = scratch.smooth[record];
-      smooth = {};
-      smooth.edge = static_cast<std::uint32_t>(e);
-      smooth.alpha = scratch.alphas[e];
-      measure(smooth);
-      scratch.recordOf[e] = record++;
-      for (const Side& face : topology.edges()[e].faces)
-        if (face.triangle != kNone) mark(stream, face.triangle);
+}
+
+// Their curves and segments.
+void Pass::measureEdges() {
+  scratch.candidates.assign(stream.replaced.size(), 0);
+  crew.forBlocks(clusters.count(), kClustersPerBlock, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t record = scratch.blockCounts[begin / kClustersPerBlock];
+    for (std::size_t c = begin; c < end; ++c) {
+      for (std::uint64_t rest = scratch.masks[c]; rest != 0; rest &= rest - 1) {
+        const std::size_t place = c * kEdgesPerCluster + static_cast<std::size_t>(std::countr_zero(rest));
+        SmoothEdge& smooth = scratch.smooth[record];
+        smooth = {};
+        smooth.edge = clusters.edgeAt(place);
+        smooth.alpha = scratch.alphas[place];
+        measure(smooth);
+        scratch.recordOf[smooth.edge] = record++;
+        for (const Side& face : topology.edges()[smooth.edge].faces)
+          if (face.triangle != kNone) mark(scratch.candidates, face.triangle);
+      }
     }
   });
 }
@@ -200,53 +209,70 @@ Patch Pass::patchOf(std::size_t triangle) const {
   return patch;
 }
 
-// The fan's inside blends into that of the patch as the silhouette comes to cross the triangle. Its rows keep
-// what that adds within the tolerance, by its size at the middles of the spokes, so that rows come in where
-// they change little.
-Cut Pass::cutOf(std::size_t triangle) const {
-  Cut cut;
-  cut.patch = patchOf(triangle);
+// Whether a triangle whose sides have at most two segments can do without its midpoint: the joined halves pass
+// within the tolerance of it.
+bool Pass::passesMidpoint(const Patch& patch, const Pattern& pattern) const {
+  const std::uint32_t k = pattern.firstHalved(), halved = pattern.halvedSides();
+  const auto middle = [&](std::uint32_t side) { return curveOffset(patch.sides[side % 3], 0.5f); };
+  vec3 joined(0.0f);  // what the joined halves add to the centroid
+  if (halved == 1) joined = (2.0f / 3.0f) * middle(k);
+  if (halved == 2) joined = (2.0f / 3.0f) * middle(k + 1);
+  if (halved == 3) joined = (middle(0) + middle(1) + middle(2)) / 3.0f;
+  const vec3 flat = patch.flatPoint(kThird, kThird, kThird);
+  return bound.distance(flat + joined, flat + patch.offset(kThird, kThird, kThird)) <= parameters.tolerance;
+}
+
+// The steps of the grid inside follow the largest error of the spokes from the corners to the midpoint, by its size at
+// their middles: a spoke of an equilateral triangle is 1/√3 of a side, so its error is a third of what a side's would be.
+Pattern Pass::patternOf(std::size_t triangle, const Patch& patch) const {
+  Pattern pattern;
+  std::uint32_t most = 1;
   for (std::size_t k = 0; k < 3; ++k) {
     const SmoothEdge* smooth = recordOfSide(triangle, k);
     if (smooth == nullptr) continue;
-    cut.pattern.sides[k] = smooth->segments;
-    cut.alphas[k] = smooth->alpha;
+    pattern.sides[k] = smooth->segments;
+    most = std::max(most, smooth->segments);
   }
-  if (parameters.segments > 0) return cut;
-  const float beta = kInsideShare * parameters.beta;
-  cut.inside = silhouettenessOf(test.facingProduct(view, triangle), beta);
-  if (cut.inside <= 0.0f) return cut;
-  const Patch& patch = cut.patch;
+  pattern.steps = most;
+  if (parameters.segments > 0 || (most <= 2 && passesMidpoint(patch, pattern))) return pattern;
+
   const vec3 middle = patch.point(kThird, kThird, kThird);
   float largest = 0.0f;
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (int k = 0; k < 3; ++k) {
     vec3 weights(kThird / 2.0f);
-    weights[static_cast<int>(k)] = 2.0f * kThird;
-    const vec3 chord = 0.5f * (patch.corners[k] + middle);
+    weights[k] = 2.0f * kThird;
+    const vec3 chord = 0.5f * (patch.corners[static_cast<std::size_t>(k)] + middle);
     largest = std::max(largest, bound.distance(chord, patch.point(weights.x, weights.y, weights.z)));
   }
-  const float rows = std::sqrt(cut.inside * largest / parameters.tolerance);
-  if (rows <= 1.0f) return cut;
-  const float most = static_cast<float>(kMaxRows);
-  cut.pattern.rows = rows < most ? static_cast<std::uint32_t>(std::ceil(rows)) : kMaxRows;
-  cut.pattern.density = kSideOverSpoke * std::min(rows, most);
-  return cut;
+  bool capped = false;  // the cap of the sides is what is reported
+  pattern.steps =
+      std::max(3u, static_cast<std::uint32_t>(segmentsFor(3.0f * largest, parameters.tolerance, capped)));
+  return pattern;
 }
 
-// Which of a word's candidates are curved: the others lose their bit.
+// Numbers the candidates.
+void Pass::listCandidates() {
+  const std::size_t words = scratch.candidates.size();
+  scratch.firstCut.resize(words + 1);
+  std::uint32_t count = 0;
+  for (std::size_t word = 0; word < words; ++word) {
+    scratch.firstCut[word] = count;
+    count += static_cast<std::uint32_t>(std::popcount(scratch.candidates[word]));
+  }
+  scratch.firstCut[words] = count;
+  scratch.cuts.resize(count);
+}
+
+// Which of a word's candidates are curved.
 Share Pass::decide(std::size_t word) {
   Share share;
-  for (std::uint64_t rest = stream.replaced[word]; rest != 0; rest &= rest - 1) {
+  std::uint32_t next = scratch.firstCut[word];
+  for (std::uint64_t rest = scratch.candidates[word]; rest != 0; rest &= rest - 1) {
     const std::size_t triangle = 64 * word + static_cast<std::size_t>(std::countr_zero(rest));
-    const Cut cut = cutOf(triangle);
-    const Pattern& pattern = cut.pattern;
-    const bool plain = pattern.sides == std::array<std::uint32_t, 3>{1, 1, 1} && pattern.rows == 1;
-    const vec3 flat = cut.patch.flatPoint(kThird, kThird, kThird);
-    const vec3 middle = cut.patch.point(kThird, kThird, kThird);
-    if (plain && bound.distance(flat, middle) <= parameters.tolerance) {
-      stream.replaced[word] &= ~(std::uint64_t{1} << (triangle % 64));
-      continue;
-    }
+    const Patch patch = patchOf(triangle);
+    const Pattern& pattern = scratch.cuts[next++] = patternOf(triangle, patch);
+    if (pattern.steps == 1) continue;
+    stream.replaced[word] |= std::uint64_t{1} << (triangle % 64);
     ++share.curved;
     share.vertices += pattern.vertexCount();
     share.triangles += pattern.triangleCount();
@@ -281,11 +307,14 @@ void Pass::placeTriangles() {
   crew.forBlocks(words, kWordsPerBlock, [&](std::size_t begin, std::size_t end) {
     const Share& before = scratch.shares[begin / kWordsPerBlock];
     std::uint32_t vertex = before.vertices, face = before.triangles;
-    for (std::size_t word = begin; word < end; ++word)
-      for (std::uint64_t rest = stream.replaced[word]; rest != 0; rest &= rest - 1)
-        emitTriangle(
-            static_cast<std::uint32_t>(64 * word) + static_cast<std::uint32_t>(std::countr_zero(rest)),
-            vertex, face);
+    for (std::size_t word = begin; word < end; ++word) {
+      std::uint32_t next = scratch.firstCut[word];
+      for (std::uint64_t rest = scratch.candidates[word]; rest != 0; rest &= rest - 1, ++next)
+        if ((stream.replaced[word] & rest & (~rest + 1)) != 0)
+          emitTriangle(
+              static_cast<std::uint32_t>(64 * word) + static_cast<std::uint32_t>(std::countr_zero(rest)),
+              scratch.cuts[next], vertex, face);
+    }
   });
 }
 
@@ -308,25 +337,22 @@ void Pass::emitEdge(const SmoothEdge& smooth) {
   }
 }
 
-void Pass::emitTriangle(std::uint32_t triangle, std::uint32_t& vertex, std::uint32_t& face) {
-  const Cut cut = cutOf(triangle);
+void Pass::emitTriangle(std::uint32_t triangle, const Pattern& pattern, std::uint32_t& vertex,
+                        std::uint32_t& face) {
+  const Patch patch = patchOf(triangle);
+  std::array<float, 3> alphas{};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (const SmoothEdge* smooth = recordOfSide(triangle, k); smooth != nullptr) alphas[k] = smooth->alpha;
   const std::uint32_t firstInner = vertex;
-  const vec3 middle = cut.patch.offset(kThird, kThird, kThird);
-  forVertices(cut.pattern, [&](std::uint32_t k, float s, float t) {
-    vec3 weights(s * kThird);
-    weights[static_cast<int>(k)] += (1.0f - s) * (1.0f - t);
-    weights[static_cast<int>(k == 2 ? 0 : k + 1)] += (1.0f - s) * t;
-    const vec3 fan = (1.0f - s) * curveOffset(cut.patch.sides[k], t) + s * middle;
-    const vec3 offset = fan + cut.inside * (cut.patch.offset(weights.x, weights.y, weights.z) - fan);
-    writer.vertex(vertex++, cut.patch.flatPoint(weights.x, weights.y, weights.z) + offset,
-                  {triangle, {weights.y, weights.z}}, cut.alphas);
+  forVertices(pattern, [&](float v, float w) {
+    writer.vertex(vertex++, patch.point(1.0f - v - w, v, w), {triangle, {v, w}}, alphas);
   });
 
   const auto firstNew = static_cast<std::uint32_t>(mesh.positions.size());
   const auto sidePoint = [&](std::uint32_t k, std::uint32_t i) {
     const std::uint32_t side = 3 * triangle + k;
     if (i == 0) return mesh.indices[side];
-    if (i == cut.pattern.sides[k]) return mesh.indices[nextInTriangle(side)];
+    if (i == pattern.sides[k]) return mesh.indices[nextInTriangle(side)];
     const SmoothEdge& smooth = *recordOfSide(triangle, k);
     const Edge& edge = topology.edges()[smooth.edge];
     const std::uint32_t own = edge.faces[1].triangle == triangle && edge.faces[1].side == k ? 1 : 0;
@@ -334,7 +360,7 @@ void Pass::emitTriangle(std::uint32_t triangle, std::uint32_t& vertex, std::uint
     return first + (edge.runsBack(own) ? smooth.inner() - i : i - 1);
   };
   const auto inner = [&](std::uint32_t i) { return firstNew + firstInner + i; };
-  forTriangles(cut.pattern, sidePoint, inner, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  forTriangles(pattern, sidePoint, inner, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     writer.triangle(face++, triangle, a, b, c);
   });
 }
@@ -354,16 +380,21 @@ class BlendedPatches final : public MethodState {
 
   void prepare(const Parameters& parameters, const Crew& crew) override {
     const CurveStyle style{parameters.tangents, parameters.robust};
+    const std::array<bool, 2> always{parameters.features, parameters.boundaries};
     if (prepared_ && style == style_ && parameters.wedgeDegrees == wedgeDegrees_ &&
-        parameters.edgeBetas.empty())
+        parameters.beta == beta_ && always == always_ && parameters.edgeBetas.empty())
       return;
     test_.prepare(mesh_, topology_, parameters, crew);
     if (fitted_.empty())
       computeEdgeCurves(mesh_, topology_, style, crew, robust_, curves_);
     else
       placeFittedCurves(crew);
+    if (clusters_.count() == 0) clusters_.build(mesh_, topology_);
+    clusters_.update(mesh_, topology_, test_, curves_, centers_, whereFitted(parameters), crew);
     style_ = style;
     wedgeDegrees_ = parameters.wedgeDegrees;
+    beta_ = parameters.beta;
+    always_ = {parameters.features, parameters.boundaries};
     prepared_ = parameters.edgeBetas.empty();
   }
 
@@ -375,6 +406,7 @@ class BlendedPatches final : public MethodState {
     Pass pass{mesh_,
               topology_,
               test_,
+              clusters_,
               curves_,
               centers_,
               view,
@@ -429,10 +461,12 @@ class BlendedPatches final : public MethodState {
   std::vector<Scratch> scratch_;
   EdgeTest test_;
   RobustEnds robust_;
+  EdgeClusters clusters_;
   std::vector<CurveOffsets> curves_;
   std::vector<vec3> centers_;  // what a fitted patch adds to b111; empty without fitted curves
   CurveStyle style_;
-  float wedgeDegrees_ = 0;
+  float wedgeDegrees_ = 0, beta_ = 0;
+  std::array<bool, 2> always_{};  // features, boundaries
   bool prepared_ = false;
 };
 

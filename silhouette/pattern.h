@@ -1,108 +1,120 @@
-// How a curved triangle is cut: a fan around its parametric midpoint, whose three sub-patches may be divided
-// into rows. Depends on counts only, never on positions.
+// How a curved triangle is cut. Depends on counts only, never on positions.
 //
-//            2              Side k runs from corner k to corner k + 1. The sub-patch over it has rows
-//            parallel to it:
-//           /|\             row 0 is the side itself with its own segments, row m the midpoint. Spokes run
-//           from the
-//          / | \            corners to the midpoint and have m segments each.
-//         /  M  \           With m = 1 this is the plain fan of the paper.
-//        / /   \ \          .
+//            2              Side k runs from corner k to corner k + 1 and has segments of its own, which its other
+//           / \             triangle shares. The inside has the points of a barycentric grid of N steps, those of its
+//          /   \            border left out: none for N <= 2, where halved sides are joined by the fewest triangles;
+//         / .   \           the midpoint for N = 3, which makes the fan of the paper; N - 3 steps a side for more. A strip
+//        / . .   \          joins them to each side. With N segments on every side that makes N² triangles.
 //       0---------1
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 
 namespace limn::silhouette {
 
 struct Pattern {
-  std::array<std::uint32_t, 3> sides{1, 1, 1};  ///< segments of each side, >= 1
-  std::uint32_t rows = 1;                       ///< m >= 1
-  float density = 0;                            ///< segments that a row of a whole side's length needs inside
+  std::array<std::uint32_t, 3> sides{1, 1, 1};  ///< segments of each side, >= 1; at most 2 where steps <= 2
+  std::uint32_t steps = 1;                      ///< N of the grid, >= 1
 
-  /// Segments of row r, 0 <= r < rows, of the sub-patch over side k.
-  std::uint32_t rowSegments(std::uint32_t k, std::uint32_t r) const {
-    if (r == 0) return sides[k];
-    // A side's curve shrunk to 1 - s has chord errors 1 - s times as large: √(1 - s) of its segments keep
-    // them.
-    const float rest = 1.0f - static_cast<float>(r) / static_cast<float>(rows);
-    const float wanted = std::ceil(std::fmax(static_cast<float>(sides[k]) * std::sqrt(rest), density * rest));
-    return wanted > 1.0f ? static_cast<std::uint32_t>(wanted) : 1u;
-  }
-
-  /// Vertices inside the triangle: the midpoint, then the spokes of corners 0, 1, 2 from the outside in, then
-  /// the inner points of the rows of sub-patches 0, 1, 2.
-  std::uint32_t vertexCount() const {
-    std::uint32_t count = 1 + 3 * (rows - 1);
-    for (std::uint32_t k = 0; k < 3; ++k)
-      for (std::uint32_t r = 1; r < rows; ++r) count += rowSegments(k, r) - 1;
-    return count;
-  }
-
+  /// Steps along a side of the grid's inside; for steps >= 3.
+  std::uint32_t innerSteps() const { return steps - 3; }
+  /// Vertices inside the triangle.
+  std::uint32_t vertexCount() const { return steps < 3 ? 0 : (steps - 1) * (steps - 2) / 2; }
   std::uint32_t triangleCount() const {
-    std::uint32_t count = 0;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      count += rowSegments(k, 0);
-      for (std::uint32_t r = 1; r < rows; ++r) count += 2 * rowSegments(k, r);
-    }
-    return count;
+    const std::uint32_t border = sides[0] + sides[1] + sides[2];
+    return steps < 3 ? border - 2 : border + 3 * innerSteps() + innerSteps() * innerSteps();
+  }
+
+  std::uint32_t halvedSides() const {
+    return (sides[0] > 1 ? 1u : 0u) + (sides[1] > 1 ? 1u : 0u) + (sides[2] > 1 ? 1u : 0u);
+  }
+  /// The first of the halved sides: the one after a whole one, or 0.
+  std::uint32_t firstHalved() const {
+    for (std::uint32_t k = 0; k < 3; ++k)
+      if (sides[k] > 1 && sides[k == 0 ? 2 : k - 1] == 1) return k;
+    return 0;
   }
 };
 
-/// Calls visit(k, s, t) for the inner vertices in the order of vertexCount(): the point of sub-patch k at the
-/// share s of the way to the midpoint and at t along the side.
+/// Calls visit(v, w) with the weights of corners 1 and 2 for the vertices inside, rows parallel to side 0.
 template <class Visit>
 void forVertices(const Pattern& pattern, const Visit& visit) {
-  const auto m = static_cast<float>(pattern.rows);
-  visit(0u, 1.0f, 0.0f);
-  for (std::uint32_t k = 0; k < 3; ++k)
-    for (std::uint32_t r = 1; r < pattern.rows; ++r) visit(k, static_cast<float>(r) / m, 0.0f);
-  for (std::uint32_t k = 0; k < 3; ++k) {
-    for (std::uint32_t r = 1; r < pattern.rows; ++r) {
-      const std::uint32_t n = pattern.rowSegments(k, r);
-      for (std::uint32_t i = 1; i < n; ++i)
-        visit(k, static_cast<float>(r) / m, static_cast<float>(i) / static_cast<float>(n));
-    }
-  }
+  if (pattern.steps < 3) return;
+  const auto steps = static_cast<float>(pattern.steps);
+  for (std::uint32_t r = 1; r + 1 < pattern.steps; ++r)
+    for (std::uint32_t i = 1; i + r < pattern.steps; ++i)
+      visit(static_cast<float>(i) / steps, static_cast<float>(r) / steps);
 }
 
-/// Calls emit(a, b, c) for the triangles, counter-clockwise like the whole. `sidePoint(k, i)` names point i =
-/// 0 … sides[k] of side k, `inner(i)` the inner vertex i.
+/// The triangles of a pattern without vertices inside: one corner is cut off for two halved sides, all three for three.
+template <class SidePoint, class Emit>
+void forHalvedTriangles(const Pattern& pattern, const SidePoint& sidePoint, const Emit& emit) {
+  const std::uint32_t k = pattern.firstHalved(), next = (k + 1) % 3, last = (k + 2) % 3;
+  const auto a = sidePoint(k, 0), b = sidePoint(next, 0), c = sidePoint(last, 0);
+  if (pattern.halvedSides() == 0) return emit(a, b, c);
+  const auto first = sidePoint(k, 1);
+  if (pattern.halvedSides() == 1) {
+    emit(a, first, c);
+    emit(first, b, c);
+    return;
+  }
+  const auto second = sidePoint(next, 1);
+  emit(first, b, second);
+  if (pattern.halvedSides() == 2) {
+    emit(a, first, second);
+    emit(a, second, c);
+    return;
+  }
+  const auto third = sidePoint(last, 1);
+  emit(a, first, third);
+  emit(third, second, c);
+  emit(first, second, third);
+}
+
+/// Calls emit(a, b, c) for the triangles, counter-clockwise like the whole. `sidePoint(k, i)` names point i = 0 …
+/// sides[k] of side k, `inner(i)` vertex i of forVertices.
 template <class SidePoint, class Inner, class Emit>
 void forTriangles(const Pattern& pattern, const SidePoint& sidePoint, const Inner& inner, const Emit& emit) {
-  const std::uint32_t m = pattern.rows;
-  std::uint32_t firstOfRow = 1 + 3 * (m - 1);
-  const auto spoke = [&](std::uint32_t corner, std::uint32_t r) {
-    return inner(1 + corner * (m - 1) + r - 1);
+  if (pattern.steps < 3) return forHalvedTriangles(pattern, sidePoint, emit);
+  const std::uint32_t m = pattern.innerSteps();
+  const auto point = [&](std::uint32_t r, std::uint32_t i) {
+    return inner(r * (m + 1) - r * (r - 1) / 2 + i);
+  };
+  for (std::uint32_t r = 0; r < m; ++r) {
+    for (std::uint32_t i = 0; i + r < m; ++i) {
+      emit(point(r, i), point(r, i + 1), point(r + 1, i));
+      if (i + r + 1 < m) emit(point(r, i + 1), point(r + 1, i + 1), point(r + 1, i));
+    }
+  }
+  const auto inside = [&](std::uint32_t k, std::uint32_t j) {
+    return k == 0 ? point(0, j) : k == 1 ? point(j, m - j) : point(m - j, 0);
+  };
+  const auto isCut = [&](std::uint32_t corner) {
+    return pattern.sides[corner] > 1 && pattern.sides[(corner + 2) % 3] > 1;
   };
   for (std::uint32_t k = 0; k < 3; ++k) {
-    const std::uint32_t next = k == 2 ? 0 : k + 1;
-    std::uint32_t before = 0;  // first inner point of the row below
-    for (std::uint32_t r = 0; r < m; ++r) {
-      const auto point = [&](std::uint32_t row, std::uint32_t first, std::uint32_t n, std::uint32_t i) {
-        if (row == m) return inner(0);
-        if (row == 0) return sidePoint(k, i);
-        if (i == 0) return spoke(k, row);
-        return i == n ? spoke(next, row) : inner(first + i - 1);
-      };
-      const std::uint32_t low = pattern.rowSegments(k, r),
-                          high = r + 1 < m ? pattern.rowSegments(k, r + 1) : 0;
-      const auto below = [&](std::uint32_t i) { return point(r, before, low, i); };
-      const auto above = [&](std::uint32_t i) { return point(r + 1, firstOfRow, high, i); };
-      // Zip the two rows: step on the one whose next point comes first.
-      for (std::uint32_t i = 0, j = 0; i < low || j < high;) {
-        if (j == high || (i < low && (i + 1) * high <= (j + 1) * low)) {
-          emit(below(i), below(i + 1), above(j));
-          ++i;
-        } else {
-          emit(below(i), above(j + 1), above(j));
-          ++j;
-        }
+    // Between two divided sides the corner is cut off: the line from it to the inside would be the longest of all.
+    if (isCut(k)) {
+      const std::uint32_t last = (k + 2) % 3;
+      const auto after = sidePoint(k, 1), before = sidePoint(last, pattern.sides[last] - 1);
+      emit(sidePoint(k, 0), after, before);
+      emit(after, inside(k, 0), before);
+    }
+    // Along the side, point i of it is at i/n and point j of the inside at (j + 3/2)/N: take the shorter diagonal.
+    const auto n = static_cast<std::int64_t>(pattern.sides[k]), N = static_cast<std::int64_t>(pattern.steps);
+    const std::uint32_t end = pattern.sides[k] - (isCut((k + 1) % 3) ? 1 : 0);
+    for (std::uint32_t i = isCut(k) ? 1 : 0, j = 0; i < end || j < m;) {
+      const std::int64_t outer = std::llabs(2 * (i + 1) * N - (2 * j + 3) * n);
+      const std::int64_t other = std::llabs((2 * j + 5) * n - 2 * i * N);
+      if (j == m || (i < end && outer <= other)) {
+        emit(sidePoint(k, i), sidePoint(k, i + 1), inside(k, j));
+        ++i;
+      } else {
+        emit(sidePoint(k, i), inside(k, j + 1), inside(k, j));
+        ++j;
       }
-      before = firstOfRow;
-      if (r + 1 < m) firstOfRow += high - 1;
     }
   }
 }

@@ -3,6 +3,7 @@
 namespace limn::silhouette {
 namespace {
 
+using glm::dot;
 using glm::vec2;
 using glm::vec3;
 
@@ -19,22 +20,21 @@ PixelBound::PixelBound(const View& view)
 }
 
 float PixelBound::chordError(const vec3& p, const vec3& q, const CurveOffsets& d) const {
-  const vec3 start = toView(p), end = toView(q);
   const vec3 d0 = linear_ * d[0], d1 = linear_ * d[1];
-  const vec3 second[2] = {d1 - 2.0f * d0, d0 - 2.0f * d1};  // b0 - 2 b1 + b2 and b1 - 2 b2 + b3
-  float largest = 0.0f;
-  if (!perspective_) {
-    for (const vec3& D : second) largest = std::max(largest, glm::length(vec2(D)));
-    return 0.75f * kRounding * largest;
-  }
-  const vec3 control[4] = {start, (2.0f * start + end) / 3.0f + d0, (start + 2.0f * end) / 3.0f + d1, end};
-  float nearest = control[0].z;
-  for (const vec3& b : control) nearest = std::min(nearest, b.z);
+  const vec3 first = d1 - 2.0f * d0, second = d0 - 2.0f * d1;  // b0 - 2 b1 + b2 and b1 - 2 b2 + b3
+  if (!perspective_)
+    return 0.75f * kRounding *
+           std::sqrt(std::max(dot(vec2(first), vec2(first)), dot(vec2(second), vec2(second))));
+  const vec3 start = toView(p), end = toView(q), third = (end - start) / 3.0f;
+  const vec3 control[4] = {start, start + third + d0, end - third + d1, end};
+  const float nearest = std::min(std::min(control[0].z, control[1].z), std::min(control[2].z, control[3].z));
+  float largest = 0.0f;  // squared
   for (const vec3& b : control) {
-    const vec2 slope = vec2(b) / std::max(b.z, nearPlane_);
-    for (const vec3& D : second) largest = std::max(largest, glm::length(vec2(D) - D.z * slope));
+    const vec2 slope = vec2(b) * (1.0f / std::max(b.z, nearPlane_));
+    const vec2 one = vec2(first) - first.z * slope, two = vec2(second) - second.z * slope;
+    largest = std::max(largest, std::max(dot(one, one), dot(two, two)));
   }
-  return 0.75f * kRounding * largest / std::max(nearest, nearPlane_);
+  return 0.75f * kRounding * std::sqrt(largest) / std::max(nearest, nearPlane_);
 }
 
 float PixelBound::distance(const vec3& p, const vec3& q) const {

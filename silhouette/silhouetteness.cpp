@@ -74,10 +74,8 @@ float EdgeTest::byContour(const View& view, const Edge& edge) const {
   return low * high;
 }
 
-float EdgeTest::facingProduct(const View& view, std::size_t triangle) const {
-  float low = 2.0f, high = -2.0f;
-  widen(view, triangle, low, high);
-  return low * high;
+float EdgeTest::largestBeta(const Parameters& parameters) const {
+  return betas_.empty() ? parameters.beta : *std::max_element(betas_.begin(), betas_.end());
 }
 
 float EdgeTest::alpha(const View& view, const Parameters& parameters, std::size_t e) const {
@@ -87,7 +85,7 @@ float EdgeTest::alpha(const View& view, const Parameters& parameters, std::size_
   if (parameters.features && edge.isFeature()) return 1.0f;
   const bool contour = parameters.silhouetteness == Silhouetteness::kContour;
   const float f = contour ? byContour(view, edge) : byEdge(view, edge);
-  return silhouettenessOf(f, betas_.empty() ? parameters.beta : betas_[e]);
+  return silhouettenessOf(f, beta(parameters, e));
 }
 
 }  // namespace limn::silhouette

@@ -33,15 +33,17 @@ class EdgeTest {
   /// α of edge `e` in a view.
   float alpha(const View& view, const Parameters& parameters, std::size_t e) const;
 
-  /// lo · hi of the contour variant over the corners of one triangle: at most 0 where the silhouette crosses
-  /// it.
-  float facingProduct(const View& view, std::size_t triangle) const;
-
   /// The unit normals of the triangles; zero for degenerate ones.
   const std::vector<glm::vec3>& faceNormals() const { return faceNormals_; }
 
- private:
+  /// f of (1).
   float byEdge(const View& view, const Edge& edge) const;
+  float beta(const Parameters& parameters, std::size_t e) const {
+    return betas_.empty() ? parameters.beta : betas_[e];
+  }
+  float largestBeta(const Parameters& parameters) const;
+
+ private:
   float byContour(const View& view, const Edge& edge) const;
   void widen(const View& view, std::size_t triangle, float& low, float& high) const;
 

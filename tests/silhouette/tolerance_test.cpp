@@ -117,6 +117,7 @@ TEST(Tolerance, RefinedSphereTendsToTheSphere) {
   Refiner refiner(sphere.mesh(), topology, workers);
   Parameters parameters;
   parameters.tangents = Tangents::kCircular;
+  parameters.beta = 0.25f;  // whatever the contour may reach is wholly smooth
   double last = 1e300;
   for (const float tolerance : {4.0f, 1.0f, 0.25f, 0.0625f}) {
     parameters.tolerance = tolerance;
@@ -137,7 +138,8 @@ TEST(Tolerance, RefinedSphereTendsToTheSphere) {
         }
       }
     }
-    EXPECT_LT(largest, 2.0 * tolerance + 2e-4 * unit) << tolerance;
+    // The inside follows an estimate, not a bound; the second term is the cubic patch's own error.
+    EXPECT_LT(largest, 1.5 * tolerance + 3e-4 * unit) << tolerance;
     EXPECT_LE(largest, last);
     last = largest;
   }

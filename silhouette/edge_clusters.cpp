@@ -1,0 +1,257 @@
+#include "silhouette/edge_clusters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "silhouette/facing_kernel.h"
+
+namespace limn::silhouette {
+namespace {
+
+using glm::dot;
+using glm::vec3;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kRounding = 1.001f;   // covers the roundings of bounds
+constexpr float kConeMargin = 1e-3f;  // in cosines
+enum Kind : std::uint8_t { kNever, kAlways, kByFacing };
+
+std::uint32_t spread(std::uint32_t x) {  // ten bits, two zeros between
+  x = (x | x << 16) & 0x030000ff;
+  x = (x | x << 8) & 0x0300f00f;
+  x = (x | x << 4) & 0x030c30c3;
+  return (x | x << 2) & 0x09249249;
+}
+
+// The edges by the Morton code of their midpoints, ties by index.
+std::vector<std::uint32_t> mortonOrder(const Mesh& mesh, const Topology& topology) {
+  vec3 low(kInfinity), high(-kInfinity);
+  for (const vec3& p : mesh.positions) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  std::vector<std::uint64_t> keys;
+  keys.reserve(topology.edges().size());
+  for (std::uint32_t e = 0; e < topology.edges().size(); ++e) {
+    const std::array<std::uint32_t, 2> ends = edgeVertices(mesh, topology.edges()[e])[0];
+    const vec3 middle = 0.5f * (mesh.positions[ends[0]] + mesh.positions[ends[1]]);
+    std::uint32_t code = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float extent = high[axis] - low[axis];
+      const float share = extent > 0.0f ? std::clamp((middle[axis] - low[axis]) / extent, 0.0f, 1.0f) : 0.0f;
+      code |= spread(static_cast<std::uint32_t>(share * 1023.0f)) << axis;
+    }
+    keys.push_back(std::uint64_t{code} << 32 | e);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::uint32_t> order;
+  order.reserve(keys.size());
+  for (const std::uint64_t key : keys) order.push_back(static_cast<std::uint32_t>(key));
+  return order;
+}
+
+float lengthOf(const vec3& v) {
+  return std::sqrt(dot(v, v));
+}
+
+}  // namespace
+
+void EdgeClusters::build(const Mesh& mesh, const Topology& topology) {
+  topology_ = &topology;
+  order_ = mortonOrder(mesh, topology);
+  const std::size_t edges = order_.size();
+  clusters_.assign((edges + kEdgesPerCluster - 1) / kEdgesPerCluster, {});
+  corners_.resize(edges);
+  vertices_.clear();
+  std::vector<std::uint32_t> own;
+  for (std::size_t c = 0; c < clusters_.size(); ++c) {
+    const std::size_t first = c * kEdgesPerCluster, last = std::min(first + kEdgesPerCluster, edges);
+    const auto cornerOf = [&](std::size_t place, std::size_t k) {
+      const Edge& edge = topology.edges()[order_[place]];
+      const Side& face = edge.faces[edge.boundary ? 0 : k / 3];
+      return mesh.indices[3 * std::size_t{face.triangle} + k % 3];
+    };
+    own.clear();
+    for (std::size_t place = first; place < last; ++place)
+      for (std::size_t k = 0; k < 6; ++k) own.push_back(cornerOf(place, k));
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+    for (std::size_t place = first; place < last; ++place)
+      for (std::size_t k = 0; k < 6; ++k)
+        corners_[place].local[k] = static_cast<std::uint16_t>(
+            std::lower_bound(own.begin(), own.end(), cornerOf(place, k)) - own.begin());
+    clusters_[c].firstVertex = static_cast<std::uint32_t>(vertices_.size());
+    clusters_[c].vertexCount = static_cast<std::uint32_t>(own.size());
+    vertices_.insert(vertices_.end(), own.begin(), own.end());
+  }
+}
+
+void EdgeClusters::update(const Mesh& mesh, const Topology& topology, const EdgeTest& test,
+                          std::span<const CurveOffsets> curves, std::span<const vec3> centers,
+                          const Parameters& parameters, const Crew& crew) {
+  kinds_.resize(order_.size());
+  bulges_.resize(order_.size());
+  for (auto* array : {&x_, &y_, &z_, &nx_, &ny_, &nz_}) array->resize(vertices_.size());
+  largestBeta_ = test.largestBeta(parameters);
+  crew.forBlocks(clusters_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) {
+      Cluster& cluster = clusters_[c];
+      cluster.bulge = 0.0f;
+      cluster.alwaysSmooth = false;
+      for (std::size_t place = c * kEdgesPerCluster;
+           place < std::min((c + 1) * kEdgesPerCluster, order_.size()); ++place) {
+        const Edge& edge = topology.edges()[order_[place]];
+        const CurveOffsets& d = curves[order_[place]];
+        float center = 0.0f;
+        if (!centers.empty())
+          for (const Side& face : edge.faces)
+            if (face.triangle != kNone) center = std::max(center, lengthOf(centers[face.triangle]));
+        // The most that edge or patch rise above their flat places: chords by 3/4 of a second difference, midpoints
+        // by the mean of six offsets and 2/9 of a fitted centre's.
+        const float chord = 0.75f * std::max(lengthOf(d[1] - 2.0f * d[0]), lengthOf(d[0] - 2.0f * d[1]));
+        bulges_[place] = std::max(chord, std::max(lengthOf(d[0]), lengthOf(d[1])) + 0.25f * center);
+        const bool always = edge.boundary ? parameters.boundaries : parameters.features && edge.isFeature();
+        const bool never = edge.nonManifold || (edge.boundary && !always) || bulges_[place] == 0.0f;
+        kinds_[place] = never ? kNever : always ? kAlways : kByFacing;
+        if (never) continue;
+        cluster.bulge = std::max(cluster.bulge, bulges_[place]);
+        cluster.alwaysSmooth = cluster.alwaysSmooth || always;
+      }
+      boundCluster(c, mesh, test);
+    }
+  });
+}
+
+// Bounding sphere of its vertices, and the cone of their normals and of their faces'.
+void EdgeClusters::boundCluster(std::size_t c, const Mesh& mesh, const EdgeTest& test) {
+  Cluster& cluster = clusters_[c];
+  vec3 low(kInfinity), high(-kInfinity), sum(0.0f);
+  for (std::size_t i = cluster.firstVertex; i < cluster.firstVertex + cluster.vertexCount; ++i) {
+    const vec3 &p = mesh.positions[vertices_[i]], &n = mesh.normals[vertices_[i]];
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+    sum += n;
+    x_[i] = p.x;
+    y_[i] = p.y;
+    z_[i] = p.z;
+    nx_[i] = n.x;
+    ny_[i] = n.y;
+    nz_[i] = n.z;
+  }
+  cluster.center = 0.5f * (low + high);
+  cluster.radius = 0.5f * kRounding * lengthOf(high - low);
+  const float length = lengthOf(sum);
+  cluster.axis = length > 0.0f ? sum / length : vec3(0.0f);
+  float least = length > 0.0f ? 1.0f : -1.0f;
+  for (std::size_t i = cluster.firstVertex; i < cluster.firstVertex + cluster.vertexCount; ++i)
+    least = std::min(least, dot(cluster.axis, mesh.normals[vertices_[i]]));
+  for (std::size_t place = c * kEdgesPerCluster; place < std::min((c + 1) * kEdgesPerCluster, order_.size());
+       ++place)
+    for (const Side& face : topology_->edges()[order_[place]].faces)
+      if (face.triangle != kNone)
+        least = std::min(least, dot(cluster.axis, test.faceNormals()[face.triangle]));
+  cluster.cosine = least - kConeMargin;
+  cluster.sine = std::sqrt(std::max(0.0f, 1.0f - cluster.cosine * cluster.cosine));
+}
+
+EdgeClusters::Eye::Eye(const View& from, const Parameters& parameters, float largestBeta)
+    : view(from),
+      perspective(from.projection.perspective),
+      contour(parameters.silhouetteness == Silhouetteness::kContour),
+      tolerance(parameters.segments > 0 ? 0.0f : parameters.tolerance),
+      beta(largestBeta),
+      axis(-from.modelToView[0][2], -from.modelToView[1][2], -from.modelToView[2][2]),
+      offset(-from.modelToView[3][2]),
+      pixels(std::max(from.projection.pixelsX, from.projection.pixelsY)),
+      nearPlane(from.projection.nearPlane) {
+  // A similarity lengthens by its columns' length; of other matrices the Frobenius norm is a bound.
+  float longest = 0.0f, sum = 0.0f, skew = 0.0f;
+  for (int k = 0; k < 3; ++k) {
+    const vec3 column(from.modelToView[k]), next(from.modelToView[(k + 1) % 3]);
+    longest = std::max(longest, lengthOf(column));
+    sum += dot(column, column);
+    skew = std::max(skew, std::fabs(dot(column, next)));
+  }
+  stretch = kRounding * (skew > 1e-4f * sum ? std::sqrt(sum) : longest);
+}
+
+// Pixels that a unit of the model measures at most near the cluster; infinite where it may reach the near plane.
+float EdgeClusters::visibleScale(const Cluster& cluster, const Eye& eye) const {
+  if (!eye.perspective) return eye.stretch * eye.pixels;
+  const float reach = (cluster.radius + cluster.bulge) * eye.stretch;
+  const float depth = dot(eye.axis, cluster.center) + eye.offset, nearest = depth - reach;
+  if (!(nearest > eye.nearPlane)) return kInfinity;
+  // |δ_xy - s δ_z| <= |δ| √(1 + s²), s the steepest slope of a point of the cluster (pixel_bound.h).
+  const float distance = lengthOf(cluster.center - eye.view.eye) * eye.stretch + reach;
+  const float slope2 = std::max(0.0f, distance * distance - nearest * nearest) / (nearest * nearest);
+  return kRounding * eye.stretch * eye.pixels * std::sqrt(1.0f + slope2) / nearest;
+}
+
+// Whether f > β for every edge whose normals lie in the cone and whose points lie in the sphere: with θ the angle
+// between the axis and the line of sight, ω that of the cone and δ that of the sphere, all facings are at least
+// cos(θ + ω + δ) in size and of one sign.
+bool EdgeClusters::facesAway(const Cluster& cluster, const Eye& eye) const {
+  if (cluster.cosine <= 0.0f) return false;
+  vec3 sight = -eye.view.direction;
+  float sinDelta = 0.0f;
+  if (eye.perspective) {
+    sight = eye.view.eye - cluster.center;
+    const float distance = lengthOf(sight);
+    if (!(distance > cluster.radius)) return false;
+    sight /= distance;
+    sinDelta = cluster.radius / distance;
+  }
+  const float cosDelta = std::sqrt(1.0f - sinDelta * sinDelta);
+  const float cosTheta = std::min(1.0f, std::fabs(dot(sight, cluster.axis)));
+  const float sinTheta = std::sqrt(1.0f - cosTheta * cosTheta);
+  const float cosSum = cosTheta * cluster.cosine - sinTheta * cluster.sine;
+  const float sinSum = sinTheta * cluster.cosine + cosTheta * cluster.sine;
+  if (cosSum <= 0.0f) return false;
+  const float least = cosSum * cosDelta - sinSum * sinDelta - kConeMargin;
+  return least > 0.0f && least * least > eye.beta;
+}
+
+std::uint64_t EdgeClusters::classify(std::size_t c, const Eye& eye, const EdgeTest& test,
+                                     const Parameters& parameters, std::span<float> alphas) const {
+  const Cluster& cluster = clusters_[c];
+  if (cluster.bulge == 0.0f) return 0;
+  const float scale = visibleScale(cluster, eye);
+  if (cluster.bulge * scale <= eye.tolerance) return 0;
+  if (!cluster.alwaysSmooth && facesAway(cluster, eye)) return 0;
+
+  const std::size_t first = cluster.firstVertex, count = cluster.vertexCount;
+  std::array<float, 6 * kEdgesPerCluster> facings;  // at most six vertices per edge
+  if (eye.contour)
+    computeFacings(eye.perspective ? eye.view.eye : -eye.view.direction, eye.perspective,
+                   {&x_[first], &y_[first], &z_[first], &nx_[first], &ny_[first], &nz_[first]}, count,
+                   facings.data());
+  std::uint64_t bends = 0;
+  const std::size_t begin = c * kEdgesPerCluster, end = std::min(begin + kEdgesPerCluster, order_.size());
+  for (std::size_t place = begin; place < end; ++place) {
+    const std::size_t i = place - begin;
+    if (kinds_[place] == kNever) continue;
+    float alpha = 1.0f;
+    if (kinds_[place] == kByFacing) {
+      float f = 0.0f;
+      if (eye.contour) {
+        float low = 2.0f, high = -2.0f;
+        for (const std::uint16_t corner : corners_[place].local) {
+          low = std::min(low, facings[corner]);
+          high = std::max(high, facings[corner]);
+        }
+        f = low * high;
+      } else {
+        f = test.byEdge(eye.view, topology_->edges()[order_[place]]);
+      }
+      alpha = silhouettenessOf(f, test.beta(parameters, order_[place]));
+    }
+    alphas[i] = alpha;
+    if (alpha > 0.0f && alpha * bulges_[place] * scale > eye.tolerance) bends |= std::uint64_t{1} << i;
+  }
+  return bends;
+}
+
+}  // namespace limn::silhouette

@@ -1,0 +1,89 @@
+// Finds the edges that bend visibly in a view without looking at all of them.
+//
+// Based on: normal cones over groups of neighbours, as in L. Shirman, S. Abi-Ezzi, "The cone of normals technique for
+// fast processing of curved patches", 1993.
+// Differs in: edges, 64 to a cluster in Morton order of their midpoints, one level only. A cluster is passed over
+// when its largest bulge projects to less than the tolerance, whatever the silhouetteness, or when all its normals face
+// so clearly one way that f > β for all its edges. What is left is tested edge by edge, over the cluster's own vertices
+// in structure-of-arrays form.
+//
+// The per-edge results are those of EdgeTest, bit for bit: facing_kernel.h.
+#pragma once
+
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "silhouette/edge_curves.h"
+#include "silhouette/silhouetteness.h"
+
+namespace limn::silhouette {
+
+inline constexpr std::size_t kEdgesPerCluster = 64;
+
+class EdgeClusters {
+ public:
+  /// Orders the edges, once per topology.
+  void build(const Mesh& mesh, const Topology& topology);
+
+  /// Bounds for new positions, normals or curves. `centers` are those of fitted patches, or empty.
+  void update(const Mesh& mesh, const Topology& topology, const EdgeTest& test,
+              std::span<const CurveOffsets> curves, std::span<const glm::vec3> centers,
+              const Parameters& parameters, const Crew& crew);
+
+  std::size_t count() const { return clusters_.size(); }
+  /// The edge at place i of the order; cluster c has places 64 c and up.
+  std::uint32_t edgeAt(std::size_t place) const { return order_[place]; }
+
+  /// How a view sees space; computed once per view.
+  struct Eye {
+    Eye(const View& view, const Parameters& parameters, float largestBeta);
+
+    View view;
+    bool perspective, contour;
+    float tolerance;  ///< pixels; 0 where segments are fixed: every bend counts
+    float beta;       ///< the largest of any edge
+    glm::vec3 axis;   ///< depth of a point p: ⟨axis, p⟩ + offset
+    float offset;
+    float stretch;  ///< at most so much does the view matrix lengthen
+    float pixels;   ///< per unit at depth 1
+    float nearPlane;
+  };
+  Eye eyeOf(const View& view, const Parameters& parameters) const { return {view, parameters, largestBeta_}; }
+
+  /// The edges of a cluster that bend visibly: bit i for place 64 c + i, whose α goes to alphas[i].
+  std::uint64_t classify(std::size_t c, const Eye& eye, const EdgeTest& test, const Parameters& parameters,
+                         std::span<float> alphas) const;
+
+ private:
+  struct Cluster {
+    glm::vec3 center{0.0f};
+    float radius = 0;
+    glm::vec3 axis{0.0f};         // of the normal cone
+    float cosine = -1, sine = 0;  // of its half angle; cosine <= 0: no cone
+    float bulge = 0;              // of its edges, the largest
+    bool alwaysSmooth = false;    // has edges that are smooth from every viewpoint
+    std::uint32_t firstVertex = 0, vertexCount = 0;
+  };
+  struct Corners {
+    std::uint16_t local[6];  // of the two faces, in the cluster's vertices; of the one face twice
+  };
+
+  void boundCluster(std::size_t c, const Mesh& mesh, const EdgeTest& test);
+  float visibleScale(const Cluster& cluster, const Eye& eye) const;
+  bool facesAway(const Cluster& cluster, const Eye& eye) const;
+
+  std::vector<std::uint32_t> order_;
+  std::vector<Cluster> clusters_;
+  std::vector<Corners> corners_;                 // per place
+  std::vector<std::uint8_t> kinds_;              // per place: never, always or by facing
+  std::vector<float> bulges_;                    // per place, model units, at α = 1
+  std::vector<std::uint32_t> vertices_;          // of all clusters, by cluster
+  std::vector<float> x_, y_, z_, nx_, ny_, nz_;  // of those vertices
+  const Topology* topology_ = nullptr;
+  float largestBeta_ = 0;
+};
+
+}  // namespace limn::silhouette

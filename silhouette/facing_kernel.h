@@ -1,0 +1,23 @@
+// The facing g of many vertices: unit-view facing, shading normal · unit vector to the eye.
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+
+namespace limn::silhouette {
+
+/// Structure of arrays of positions and normals.
+struct VertexArrays {
+  const float *x, *y, *z, *nx, *ny, *nz;
+};
+
+/// facings[i] = ⟨n_i, v_i⟩/|v_i|, 0 where v_i = 0. `eye` is the eye (perspective: v_i = eye - p_i) or the constant
+/// vector to it. The vector units of the machine do it; the same bits as computeFacingsScalar on all of them.
+void computeFacings(const glm::vec3& eye, bool perspective, const VertexArrays& vertices, std::size_t count,
+                    float* facings);
+
+/// The definition of correct.
+void computeFacingsScalar(const glm::vec3& eye, bool perspective, const VertexArrays& vertices,
+                          std::size_t count, float* facings);
+
+}  // namespace limn::silhouette
