@@ -68,6 +68,7 @@ Scene loadGltf(const std::string& file, std::vector<std::uint8_t> bytes,
   readAnimations(document, nodeOf, scene);
   readMaterials(document, scene);
   const std::size_t triangles = chargeInstances(document, scene);
+  checkWorldTransforms(document, scene, nodeOf);
   scene.notices = std::move(document.notices);
   if (triangles == 0) scene.notices.emplace_back("The file holds no triangles to draw.");
   return scene;

@@ -153,21 +153,6 @@ Light readLight(const tinygltf::Light& source) {
   return light;
 }
 
-void checkWorldTransforms(const GltfDocument& document, const Scene& scene,
-                          const std::vector<std::uint32_t>& order) {
-  constexpr double kLargest = 1e30;  // two coordinates of 1e15 multiplied; their squares are doubles still
-  Pose pose;
-  evaluatePose(scene, -1, 0.0, pose);
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (int c = 0; c < 4; ++c) {
-      for (int r = 0; r < 4; ++r) {
-        if (std::abs(pose.nodeToWorld[i][c][r]) <= kLargest) continue;
-        document.refuse(jsonPointer("nodes", order[i]), "its transforms multiply to numbers beyond 1e30");
-      }
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> readNodes(GltfDocument& document, Scene& scene) {
@@ -185,8 +170,23 @@ std::vector<std::uint32_t> readNodes(GltfDocument& document, Scene& scene) {
   for (std::size_t i = 0; i < document.model.cameras.size(); ++i)
     scene.cameras.push_back(readCamera(document, i));
   for (const tinygltf::Light& light : document.model.lights) scene.lights.push_back(readLight(light));
-  checkWorldTransforms(document, scene, order);
   return nodeOf;
+}
+
+void checkWorldTransforms(const GltfDocument& document, const Scene& scene,
+                          const std::vector<std::uint32_t>& nodeOf) {
+  constexpr double kLargest = 1e30;  // two coordinates of 1e15 multiplied; their squares are doubles still
+  Pose pose;
+  evaluatePose(scene, -1, 0.0, pose);
+  for (std::size_t n = 0; n < nodeOf.size(); ++n) {
+    const glm::dmat4& toWorld = pose.nodeToWorld[nodeOf[n]];
+    for (int c = 0; c < 4; ++c) {
+      for (int r = 0; r < 4; ++r) {
+        if (std::abs(toWorld[c][r]) <= kLargest) continue;
+        document.refuse(jsonPointer("nodes", n), "its transforms multiply to numbers beyond 1e30");
+      }
+    }
+  }
 }
 
 }  // namespace limn::scene

@@ -10,8 +10,8 @@
 namespace limn::scene {
 
 /// Fills scene.nodes (parents first), scene.inScene, cameras and lights; scene.meshes are there already.
-/// Returns for each node of the file its place in scene.nodes. Throws InputError for cycles, nodes with two
-/// parents, and transforms that leave the range of numbers.
+/// Returns for each node of the file its place in scene.nodes. Throws InputError for cycles and nodes with two
+/// parents.
 std::vector<std::uint32_t> readNodes(GltfDocument& document, Scene& scene);
 
 /// Fills scene.skins and checks that the meshes' joints are there.
@@ -19,5 +19,9 @@ void readSkins(GltfDocument& document, const std::vector<std::uint32_t>& nodeOf,
 
 /// Fills scene.animations.
 void readAnimations(GltfDocument& document, const std::vector<std::uint32_t>& nodeOf, Scene& scene);
+
+/// Refuses a scene, complete but for its poses, whose nodes multiply to numbers that no double can square.
+void checkWorldTransforms(const GltfDocument& document, const Scene& scene,
+                          const std::vector<std::uint32_t>& nodeOf);
 
 }  // namespace limn::scene
