@@ -123,7 +123,8 @@ struct FrameDrawer::State {
   std::vector<raster::Light> lights;
   silhouette::Parameters parameters;  ///< of the last frame
 
-  State(const Scene& drawn, int threads) : scene(drawn), workers(threads), renderer(threads) {
+  State(const Scene& drawn, int threads, const raster::Tuning& tuning)
+      : scene(drawn), workers(threads), renderer(threads, tuning) {
     meshes.resize(scene.meshes.size());
   }
 
@@ -226,7 +227,8 @@ raster::Target targetOf(Image& image, Planes* planes) {
 
 }  // namespace
 
-FrameDrawer::FrameDrawer(const Scene& scene, int threads) : state_(std::make_unique<State>(scene, threads)) {}
+FrameDrawer::FrameDrawer(const Scene& scene, int threads, const raster::Tuning& tuning)
+    : state_(std::make_unique<State>(scene, threads, tuning)) {}
 FrameDrawer::~FrameDrawer() = default;
 
 void FrameDrawer::refine(const Pose& pose, const CameraView& camera, const FrameSettings& settings) {

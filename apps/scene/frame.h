@@ -54,7 +54,8 @@ struct RefinedInstance {
 /// Draws frames of one scene; keeps what does not change between frames.
 class FrameDrawer {
  public:
-  FrameDrawer(const Scene& scene, int threads);
+  /// `tuning` changes no pixel.
+  FrameDrawer(const Scene& scene, int threads, const raster::Tuning& tuning = {});
   ~FrameDrawer();
 
   /// mesh → topology (once) → classify → refine → stream → rasterize. The picture is resized as the camera says.

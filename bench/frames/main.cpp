@@ -1,6 +1,8 @@
 // limn_bench_frames: whole frames of the grid scene, refined and rasterized, with the picture in client memory.
 #include <sys/resource.h>
 
+#include <hwy/targets.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -21,12 +23,26 @@ struct Options {
   silhouette::Parameters refinement;
   int samples = 1;
   raster::Encoding encoding = raster::Encoding::kNone;
+  raster::Tuning tuning;
 };
 
 constexpr std::pair<const char*, silhouette::Method> kMethods[] = {{"flat", silhouette::Method::kFlat},
                                                                    {"patches", silhouette::Method::kPatches},
                                                                    {"curves", silhouette::Method::kCurves},
                                                                    {"pn", silhouette::Method::kPn}};
+
+/// Leaves the rasterizer one instruction set, or plain C++.
+void useInstructions(const std::string& name, raster::Tuning& tuning) {
+  tuning.scalar = name == "scalar";
+  if (tuning.scalar) return;
+  const std::map<std::string, std::int64_t> targets{
+      {"SSE4", HWY_SSE4}, {"AVX2", HWY_AVX2}, {"AVX-512", HWY_AVX3}, {"NEON", HWY_NEON}};
+  const std::int64_t target = targets.at(name);
+  if ((hwy::SupportedTargets() & target) == 0)
+    throw CLI::ValidationError("--simd", "this machine has no " + name);
+  hwy::SetSupportedTargetsForTest(target);
+  hwy::GetChosenTarget().DeInit();
+}
 
 const char* nameOf(silhouette::Method method) {
   for (const auto& [name, value] : kMethods) {
@@ -55,9 +71,13 @@ Options parse(int argc, char** argv) {
       ->transform(CLI::CheckedTransformer(std::map<std::string, raster::Encoding>{
           {"none", raster::Encoding::kNone}, {"srgb", raster::Encoding::kSrgb}}))
       ->default_str("none");
+  std::string instructions;
+  app.add_option("--simd", instructions, "only this instruction set: scalar, SSE4, AVX2, AVX-512 or NEON")
+      ->check(CLI::IsMember({"scalar", "SSE4", "AVX2", "AVX-512", "NEON"}));
   try {
     app.parse(argc, argv);
     if (options.scene.threads < 1) throw CLI::ValidationError("--threads", "is at least 1");
+    if (!instructions.empty()) useInstructions(instructions, options.tuning);
   } catch (const CLI::ParseError& error) {
     std::exit(app.exit(error) == 0 ? 0 : 2);
   }
@@ -90,7 +110,7 @@ class Bench {
       : options_(options),
         grid_(options.scene.copies, options.scene.width, options.scene.height),
         scene_(makeScene(options)),
-        drawer_(scene_, options.scene.threads) {
+        drawer_(scene_, options.scene.threads, options.tuning) {
     camera_.projection = grid_.projection();
     settings_.refinement = options.refinement;
     settings_.samples = options.samples;
