@@ -45,18 +45,26 @@ TEST_F(Manual, EveryCommandWorks) {
   }
 }
 
-TEST_F(Manual, NamesEveryOption) {
-  std::ifstream text(LIMN_MANUAL);
-  const std::string manual{std::istreambuf_iterator<char>(text), std::istreambuf_iterator<char>()};
+std::string readText(const std::filesystem::path& file) {
+  std::ifstream text(file);
+  return {std::istreambuf_iterator<char>(text), std::istreambuf_iterator<char>()};
+}
+
+TEST_F(Manual, AndManPageNameEveryOption) {
+  const std::filesystem::path file = LIMN_MANUAL;
+  const std::string manual = readText(file);
+  std::string page = readText(file.parent_path() / "limn.1");
+  std::erase(page, '\\');
   std::istringstream help(limn({"render", "--help"}).out);
+  std::size_t options = 0;
   for (std::string word; help >> word;) {
-    if (!word.starts_with("--") && !word.starts_with("-o,--")) continue;
-    const std::string option = word.substr(word.find("--"));
-    if (option == "--output" || option == "--help" ||
-        option.find_first_not_of("-abcdefghijklmnopqrstuvwxyz") != std::string::npos)
+    if (!word.starts_with("--") || word.find_first_not_of("-abcdefghijklmnopqrstuvwxyz") != std::string::npos)
       continue;
-    EXPECT_NE(manual.find(option), std::string::npos) << option;
+    ++options;
+    EXPECT_NE(manual.find(word), std::string::npos) << word;
+    EXPECT_NE(page.find(word), std::string::npos) << word;
   }
+  EXPECT_GT(options, 30U);
 }
 
 }  // namespace
