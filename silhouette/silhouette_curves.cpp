@@ -318,9 +318,11 @@ void Pass::lower(std::uint32_t point, const vec3& displacement) {
     const auto at = static_cast<std::uint32_t>(scratch.lowered.size());
     scratch.loweredOf[vertex] = at;
     scratch.lowered.push_back(vertex);
-    stream.positions.push_back(mesh.positions[vertex] + displacement);
-    stream.normals.push_back(mesh.normals[vertex]);
-    stream.origins.push_back({side / 3, {side % 3 == 1 ? 1.0f : 0.0f, side % 3 == 2 ? 1.0f : 0.0f}});
+    stream.positions.emplace_back();
+    stream.normals.emplace_back();
+    stream.origins.emplace_back();
+    const Origin origin{side / 3, {side % 3 == 1 ? 1.0f : 0.0f, side % 3 == 2 ? 1.0f : 0.0f}};
+    writer.vertex(at, mesh.positions[vertex] + displacement, origin, kLinear);
   }
 }
 
