@@ -83,7 +83,7 @@ double powerError(std::uint64_t seed, std::size_t cases) {
 }
 
 constexpr std::array kChecks{
-    KernelCheck{"sinCos", "ulp, of 1e-10 at least", 4.0, "|x| <= 1e6",
+    KernelCheck{"sinCos", "ulp, of 1e-10 at least", 2.0, "|x| <= 1e6",
                 "the reduction loses digits in proportion; NaN for infinities", sineError},
     KernelCheck{"arcTangent2", "ulp", 3.0, "magnitudes of 1e-9 to 1e9", "0 at the origin", arcTangentError},
     KernelCheck{"arcCosine", "degrees", 1e-12, "[-1, 1]", "clamped to it", arcCosineError},

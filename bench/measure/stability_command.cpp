@@ -15,7 +15,7 @@ int runStability(const Options& options) {
     std::fprintf(stderr, "%-34s %12.4g %12.4g  %s%s\n", name, largest, bound, unit,
                  largest <= bound ? "" : "  BROKEN");
   };
-  for (const auto& checks : {baseChecks(), silhouetteChecks()}) {
+  for (const auto& checks : {baseChecks(), silhouetteChecks(), rasterChecks()}) {
     for (const KernelCheck& check : checks) {
       const double largest =
           check.largestError(options.seed >= 0 ? static_cast<std::uint64_t>(options.seed) : kSeed, cases);
@@ -29,6 +29,18 @@ int runStability(const Options& options) {
                       {"domain", check.domain},
                       {"outside", check.outside}});
     }
+  }
+  for (const ExtremeCheck& check : extremeChecks()) {
+    const double error = check.error();
+    tell(check.name, error, check.bound, check.unit);
+    rows.push_back({{"kernel", check.name},
+                    {"unit", check.unit},
+                    {"largest", error},
+                    {"bound", check.bound},
+                    {"holds", error <= check.bound},
+                    {"cases", 1},
+                    {"domain", check.meaning},
+                    {"outside", ""}});
   }
   print(rows, options);
   return 0;

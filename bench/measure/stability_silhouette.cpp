@@ -5,6 +5,7 @@
 
 #include "bench/measure/extremes.h"
 #include "bench/measure/stability.h"
+#include "silhouette/contour.h"
 #include "silhouette/edge_curves.h"
 #include "silhouette/patch.h"
 #include "silhouette/pixel_bound.h"
@@ -265,6 +266,26 @@ double projectionError(std::uint64_t seed, std::size_t cases) {
   return largest.value();
 }
 
+// Where the contour crosses an edge: the root against the same formula in long double.
+double rootError(std::uint64_t seed, std::size_t cases) {
+  Extremes random(seed);
+  Largest largest;
+  for (std::size_t i = 0; i < cases; ++i) {
+    const double sign = random.sign();
+    const double a = sign * random.magnitude(1e-12, 1e12), c = -sign * random.magnitude(1e-12, 1e12);
+    const double b = random.oneIn(5) ? 0.0 : random.sign() * random.magnitude(1e-14, 1e14);
+    const long double root = std::sqrt(static_cast<long double>(b) * b - 4.0L * a * c);
+    const long double q = -0.5L * (b < 0 ? b - root : b + root);
+    const bool first = (b < 0) == (c > 0);
+    const long double tau = first ? q / c : a / q, u = tau / (1 + tau), rest = 1 / (1 + tau);
+    const double found = silhouette::contourRoot(a, b, c);
+    largest.see((found - u) / (std::max(u, 1e-3L) * 0x1p-53L));
+    if (rest < 1e-3L) continue;
+    largest.see(((1 - found) - rest) / 0x1p-53L);
+  }
+  return largest.value();
+}
+
 constexpr const char* kPairDomain =
     "sizes 1e-6 to 1e4, up to 100 sizes from the origin, needles of 1:1000, eye 3 sizes away or more";
 constexpr const char* kCurveDomain = "as for silhouetteness; feature normals 2 to 178 degrees apart";
@@ -286,6 +307,9 @@ constexpr std::array kChecks{
     KernelCheck{"edge curve, geodesic", "edge lengths", 1e-6, kPairDomain, kFarOrigin, geodesicCurveError},
     KernelCheck{"patch point", "ulp of the largest coordinate", 5.0,
                 "sizes 1e-6 to 1e6, up to 1000 from the origin", "the same, to overflow", patchError},
+    KernelCheck{"contour crossing of an edge", "2^-53 of u, of 0.001 at least", 6.0,
+                "values of 1e-12 to 1e12 at the ends",
+                "at an end that is exactly on the contour the root is that end", rootError},
     KernelCheck{"projection for segment counts", "pixels", 0.005,
                 "window of 16384 pixels, points no farther from the origin than half their depth",
                 "grows with the ratio; depths before the near plane count as there", projectionError},

@@ -6,7 +6,7 @@
 namespace limn::measure {
 namespace {
 
-constexpr std::size_t kCases = 20000;
+constexpr std::size_t kCases = 5000;
 
 void holdBounds(std::span<const KernelCheck> checks) {
   for (const KernelCheck& check : checks) {
@@ -23,6 +23,15 @@ TEST(Stability, BaseKernelsKeepTheirBounds) {
 }
 TEST(Stability, SilhouetteKernelsKeepTheirBounds) {
   holdBounds(silhouetteChecks());
+}
+TEST(Stability, RasterKernelsKeepTheirBounds) {
+  holdBounds(rasterChecks());
+}
+
+TEST(Stability, ExtremesGiveThePicturesTheyShould) {
+  for (const ExtremeCheck& check : extremeChecks()) {
+    EXPECT_LE(check.error(), check.bound) << check.name << ": " << check.meaning;
+  }
 }
 
 }  // namespace
