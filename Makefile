@@ -8,8 +8,9 @@ PACKAGES := g++ cmake ninja-build pkg-config git \
   libdeflate-dev libpng-dev libxxhash-dev libgtest-dev libbenchmark-dev librapidcheck-dev
 # What `make check` needs besides.
 CHECK_PACKAGES := clang clang-format clang-tidy libclang-rt-14-dev assimp-testmodels xxhash
-# What `make bench` needs besides: gnuplot draws its pictures, Mesa's OSMesa is the peer in the race.
-BENCH_PACKAGES := gnuplot-nox python3 libgl-dev libosmesa6
+# What `make bench` needs besides: gnuplot draws its pictures, Mesa's OSMesa is the peer in the race, chromium opens the
+# report to see that it works.
+BENCH_PACKAGES := gnuplot-nox fonts-dejavu-core python3 libgl-dev libosmesa6 chromium
 
 .PHONY: help build demo pictures check check-all bench fuzz format packages check-packages bench-packages
 
@@ -82,6 +83,7 @@ bench: bench-packages
 	@mkdir -p bench/results
 	@bench/race.py --json bench/results/race.json | tee bench/results/race.md
 	@bench/linear.py --picture bench/results/linear.svg | tee bench/results/linear.md
+	@bench/run.sh build/release bench/results
 
 # What a run finds is mended, and the input kept in tests/fuzz/corpus, where every later run starts.
 FUZZ_SECONDS ?= 60
