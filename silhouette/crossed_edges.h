@@ -30,7 +30,7 @@ using EdgeVertexList = std::array<EdgeVertex, kMaxSideVertices>;
 
 struct CrossedEdge {
   std::uint32_t edge = 0;
-  float alpha = 1;                      ///< share of the curve that is shown
+  float alpha = 1;                   ///< share of the curve that is shown
   std::uint32_t segments = 1;        ///< of the curve's polyline
   std::array<bool, 2> crosses{};     ///< per face: it has a silhouette point
   std::array<float, 2> parameter{};  ///< of the silhouette point, or of the vertex that it became

@@ -101,9 +101,9 @@ constexpr Field kPrimitive[] = {
     index("indices", kAccessors),
     index("material", kMaterials),
     whole("mode", 0, 6)};
-constexpr Field kFittedCurves[] = {required(index("ends", kAccessors)), required(index("centers", kAccessors)),
-                                   required(numbers("endScale", 3)), required(numbers("centerScale", 3)),
-                                   required(text("key"))};
+constexpr Field kFittedCurves[] = {required(index("ends", kAccessors)),
+                                   required(index("centers", kAccessors)), required(numbers("endScale", 3)),
+                                   required(numbers("centerScale", 3)), required(text("key"))};
 constexpr Field kMeshExtensions[] = {object("LIMN_fitted_curves", kFittedCurves)};
 constexpr Field kMesh[] = {text("name"), required(objects("primitives", kPrimitive)), numbers("weights", 0),
                            object("extensions", kMeshExtensions)};
@@ -199,8 +199,8 @@ constexpr Field kRoot[] = {required(object("asset", kAsset)),
                            index("scene", kScenes),
                            object("extensions", kRootExtensions)};
 
-constexpr std::string_view kKnownExtensions[] = {"KHR_lights_punctual", "KHR_materials_emissive_strength",
-                                                 "KHR_materials_unlit", "KHR_mesh_quantization",
+constexpr std::string_view kKnownExtensions[] = {"KHR_lights_punctual",   "KHR_materials_emissive_strength",
+                                                 "KHR_materials_unlit",   "KHR_mesh_quantization",
                                                  "KHR_texture_transform", "LIMN_fitted_curves"};
 
 }  // namespace
