@@ -75,6 +75,7 @@ check: check-packages
 
 # The full matrix; the other compilers of Debian are used where they are installed.
 check-all: check
+	@tests/tidy.sh build/sanitize all
 	@tests/matrix.sh
 
 # Each part writes its results to bench/results; all together take less than ten minutes.
