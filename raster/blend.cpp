@@ -2,6 +2,8 @@
 //
 // Based on: T. Porter, T. Duff, "Compositing digital images", 1984.
 // Differs in: nothing; pixels that nothing is blended over never get colours per sample.
+#include "raster/blend.h"
+
 #include "raster/setup.h"
 #include "raster/surface.h"
 #include "raster/tile.h"
@@ -16,8 +18,26 @@ unsigned samplesOf(const Tile& tile, std::uint32_t id, int x, int y) {
   return mask;
 }
 
-// Gives a pixel its colours per sample: what is visible in it so far.
-void open(Tile& tile, int x, int y) {
+void blendPixel(Tile& tile, TriangleSetup& t, int x, int y) {
+  const unsigned coverage = t.coverage(tile, x, y);
+  unsigned seen = 0;
+  for (unsigned s = 0; coverage >> s != 0; ++s) {
+    const bool covered = ((coverage >> s) & 1U) != 0;
+    seen |= static_cast<unsigned>(covered && t.depthAt(tile, s, x, y) >=
+                                                 tile.depth[tile.offset(static_cast<int>(s), x, y)])
+            << s;
+  }
+  if (seen == 0) return;
+  const glm::vec4 color = shadeAt(tile, t.record, shadingPoint(tile, t.corners, coverage, x, y));
+  if (color.w <= 0.0F) return;
+  openPixel(tile, x, y);
+  for (unsigned s = 0; seen >> s != 0; ++s)
+    if (((seen >> s) & 1U) != 0) blendOver(tile.colors[tile.offset(static_cast<int>(s), x, y)], color);
+}
+
+}  // namespace
+
+void openPixel(Tile& tile, int x, int y) {
   std::uint8_t& isBlended = tile.isBlended[tile.offset(0, x, y)];
   if (isBlended != 0) return;
   isBlended = 1;
@@ -38,31 +58,6 @@ void open(Tile& tile, int x, int y) {
       if (((mask >> k) & 1U) != 0) tile.colors[tile.offset(k, x, y)] = color;
   }
 }
-
-void over(glm::vec4& under, const glm::vec4& color) {
-  const float rest = 1.0F - color.w;
-  under = {color.x * color.w + under.x * rest, color.y * color.w + under.y * rest,
-           color.z * color.w + under.z * rest, color.w + under.w * rest};
-}
-
-void blendPixel(Tile& tile, TriangleSetup& t, int x, int y) {
-  const unsigned coverage = t.coverage(tile, x, y);
-  unsigned seen = 0;
-  for (unsigned s = 0; coverage >> s != 0; ++s) {
-    const bool covered = ((coverage >> s) & 1U) != 0;
-    seen |= static_cast<unsigned>(covered && t.depthAt(tile, s, x, y) >=
-                                                 tile.depth[tile.offset(static_cast<int>(s), x, y)])
-            << s;
-  }
-  if (seen == 0) return;
-  const glm::vec4 color = shadeAt(tile, t.record, shadingPoint(tile, t.corners, coverage, x, y));
-  if (color.w <= 0.0F) return;
-  open(tile, x, y);
-  for (unsigned s = 0; seen >> s != 0; ++s)
-    if (((seen >> s) & 1U) != 0) over(tile.colors[tile.offset(static_cast<int>(s), x, y)], color);
-}
-
-}  // namespace
 
 void blendTriangles(Tile& tile) {
   TriangleSetup t;

@@ -90,12 +90,22 @@ struct Draw {
   std::uint32_t firstId = 0;    ///< id plane: firstId + source triangle
 };
 
+/// Anti-aliased line segments over the picture, hidden where a surface lies in front of them. They are drawn after all
+/// triangles, in the order given, and leave no trace in depth, normals and ids.
+struct Lines {
+  std::span<const glm::vec3> points;  ///< two per segment, model space, finite
+  std::span<const glm::vec4> colors;  ///< linear RGB and straight alpha, one per segment
+  glm::mat4 modelToView{1.0f};        ///< affine
+  float width = 1.0f;                 ///< pixels, above 0, at most 64
+};
+
 /// Everything of one frame. Spans are borrowed until draw() returns.
 struct Frame {
   Projection projection;
   std::span<const Draw> draws;
   std::span<const Material> materials;
   std::span<const Light> lights;
+  std::span<const Lines> lines;
   Shading shading = Shading::kBlinnPhong;
   Encoding encoding = Encoding::kSrgb;
   glm::vec4 background{0.0f};  ///< linear RGB and straight alpha

@@ -57,6 +57,10 @@ void requireValid(const Frame& frame, const Target& target) {
           "the target needs rgba rows of 4 bytes per pixel");
   for (const Material& m : frame.materials)
     require(m.shininess >= 1 && m.shininess <= 1024, "shininess is 1 to 1024");
+  for (const Lines& lines : frame.lines) {
+    require(lines.points.size() == 2 * lines.colors.size(), "lines: two points and one colour per segment");
+    require(lines.width > 0.0F && lines.width <= 64.0F, "lines: a width is above 0 and at most 64");
+  }
   for (const Draw& draw : frame.draws) {
     requireValid(draw);
     for (const Part& part : draw.geometry->data().parts)
@@ -94,6 +98,7 @@ struct Renderer::State {
   Tuning tuning;
   BatchBuilder batches;
   FrontEnd front;
+  LineBins lines;
   std::vector<Tile> tiles;  // one per thread
 };
 
@@ -119,10 +124,11 @@ void Renderer::draw(const Frame& frame, const Target& target, Statistics* statis
   const double transformMs = msSince(start);
   const Kernels kernels = s.tuning.scalar ? scalarKernels() : vectorKernels();
   s.front.run(frame, batches, s.batches.clusterCount(), map, tiling, kernels, s.workers);
+  s.lines.run(frame, map, tiling, s.workers);
   const double binningMs = msSince(start) - transformMs;
 
-  const FrameContext context{frame,  target, map, tiling, batches, s.front, samplePattern(frame.samples),
-                             kernels};
+  const FrameContext context{frame,   target, map, tiling, batches, s.front, samplePattern(frame.samples),
+                             kernels, s.lines};
   for (Tile& tile : s.tiles) tile.statistics = {};
   s.workers.forBlocks(tiling.count(), 1, [&](std::size_t index, std::size_t, int slot) {
     Tile& tile = s.tiles[static_cast<std::size_t>(slot)];
@@ -131,6 +137,7 @@ void Renderer::draw(const Frame& frame, const Target& target, Statistics* statis
     kernels.resolveVisibility(tile);
     const double visibilityMs = msSince(begin);
     blendTriangles(tile);
+    drawLines(tile);
     kernels.shadeTile(tile);
     writePlanes(tile);
     tile.statistics.visibilityMs += visibilityMs;
@@ -142,7 +149,7 @@ void Renderer::draw(const Frame& frame, const Target& target, Statistics* statis
   statistics->transformMs = transformMs;
   statistics->binningMs = binningMs;
   statistics->trianglesIn = s.front.trianglesIn();
-  statistics->scratchBytes = s.batches.memoryBytes() + s.front.memoryBytes();
+  statistics->scratchBytes = s.batches.memoryBytes() + s.front.memoryBytes() + s.lines.memoryBytes();
   for (const Tile& tile : s.tiles) {
     statistics->trianglesDrawn += tile.statistics.trianglesDrawn;
     statistics->pixelsShaded += tile.statistics.pixelsShaded;

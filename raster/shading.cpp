@@ -21,7 +21,7 @@ class Shader {
     glm::vec4 sum(0.0F);
     unsigned left = (1U << samples_) - 1U;
     int empty = 0;
-    const bool blended = !tile_.blended.empty() && tile_.isBlended[tile_.offset(0, x, y)] != 0;
+    const bool blended = tile_.overlaid && tile_.isBlended[tile_.offset(0, x, y)] != 0;
     for (int s = 0; s < samples_; ++s) {
       const std::size_t o = tile_.offset(s, x, y);
       if (tile_.ids[o] == kNoRecord) {

@@ -61,7 +61,7 @@ class Shading {
     MI whole = inside;  // pixels all of whose samples show the same
     for (std::size_t s = 1; s < context_.samples.size(); ++s)
       whole = hn::And(whole, hn::Eq(ids, idsAt(s, x, y)));
-    if (!tile_.blended.empty()) whole = hn::And(whole, notBlended(x, y));
+    if (tile_.overlaid) whole = hn::And(whole, notBlended(x, y));
     const MI seen = hn::And(whole, hn::Ne(ids, hn::Set(d, -1)));
     MI done = whole;
     VI color = hn::Set(d, background_);
@@ -76,7 +76,7 @@ class Shading {
     store(color, x, y);
     for (unsigned left = bitsOf(hn::AndNot(done, inside)); left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
-      const bool blended = !tile_.blended.empty() && tile_.isBlended[tile_.offset(0, x + lane, y)] != 0;
+      const bool blended = tile_.overlaid && tile_.isBlended[tile_.offset(0, x + lane, y)] != 0;
       if (blended || tile_.context->samples.size() == 1 || !fragments_.add(x + lane, y))
         shadePixelScalar(tile_, x + lane, y);
     }

@@ -27,7 +27,9 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
   }
   recordCount = 0;
   attributes.clear();
-  if (!blended.empty()) {
+  lines = c.lines.of(index);
+  overlaid = !blended.empty() || !lines.empty();
+  if (overlaid) {
     colors.resize(samples);
     isBlended.assign(samples / c.samples.size(), 0);
   }

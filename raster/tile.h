@@ -9,6 +9,7 @@
 
 #include "raster/clip.h"
 #include "raster/front_end.h"
+#include "raster/lines.h"
 #include "raster/samples.h"
 #include "raster/transform.h"
 #include "raster/triangle.h"
@@ -27,6 +28,7 @@ struct FrameContext {
   const FrontEnd& front;
   std::span<const SamplePosition> samples;
   const Kernels& kernels;
+  const LineBins& lines;
 };
 
 inline constexpr int kMaxSamples = 8;
@@ -121,7 +123,8 @@ class Tile {
   std::vector<Surface> surfaces;            // of the tile's clusters
   const Material* plainMaterial = nullptr;  // if all have it, without textures or vertex colours
   std::vector<VertexBlock> blocks;          // of the tile's clusters
-  std::span<const std::uint32_t> clusters, loose, blended;
+  std::span<const std::uint32_t> clusters, loose, blended, lines;
+  bool overlaid = false;  // something is blended over the tile
   std::vector<glm::vec4>
       colors;  // colour · alpha, alpha, by offset(): of pixels that something is blended over
   std::vector<std::uint8_t> isBlended;  // per pixel of the tile: its colours are in `colors`
@@ -141,6 +144,8 @@ inline constexpr int kRowPadding = 16;
 void resolveVisibility(Tile& tile);
 /// Blended triangles over what is visible, far to near.
 void blendTriangles(Tile& tile);
+/// Lines over all triangles.
+void drawLines(Tile& tile);
 /// The picture.
 void shadeTile(Tile& tile);
 /// The target's other planes, where it has them.
