@@ -1,6 +1,6 @@
 // Visibility of a tile, a vector at a time. Definition: visibility.cpp.
 //
-// Based on: raster notes of S. Laine, T. Karras, "High-performance software rasterization on GPUs", 2011 (size classes);
+// Based on: S. Laine, T. Karras, "High-performance software rasterization on GPUs", 2011 (size classes);
 // M. Abrash, "Rasterization on Larrabee", 2009.
 // Differs in: a cluster's triangles are culled a vector at a time; of what is left, boxes of at most 3 × 3 pixels are
 // drawn a vector of triangles at a time, all others a vector of pixels at a time, column by column of that width.
