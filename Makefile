@@ -80,7 +80,8 @@ check-all: check
 
 # Each part writes its results to bench/results; all together take less than ten minutes.
 bench: bench-packages
-	@cmake --preset release -D LIMN_BUILD_PEER=ON --log-level=WARNING >/dev/null && cmake --build --preset release | tail -n 1
+	@cmake --preset release -D LIMN_BUILD_PEER=ON --log-level=WARNING >/dev/null
+	@$(call compile,release,bench/all)
 	@mkdir -p bench/results
 	@bench/race.py --json bench/results/race.json | tee bench/results/race.md
 	@bench/linear.py --picture bench/results/linear.svg | tee bench/results/linear.md
