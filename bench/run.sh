@@ -31,25 +31,28 @@ machine() {
     "$(cut -d ' ' -f 1 /proc/loadavg)"
 }
 
-# The frame table: the method's runs in turns with the flat mesh's, the least of all rounds.
-frame_line() {  # MODEL METHOD TOLERANCE
+# The frame table: the methods' runs in turns with the flat mesh's, at the scale where that covers half of the window.
+frame_run() { "$bin/limn_bench_frames" --model "$1" --copies "$2" --size 1280x800 --samples 1 "${@:3}" 2>/dev/null | tr '\n' ' '; }
+frame_scale() { frame_run "$1" "$2" --coverage 0.5 --method flat --seconds 0.01 | sed -n 's/.*scale=\([0-9.]*\).*/\1/p' || true; }
+frame_line() {  # MODEL COPIES SCALE METHOD TOLERANCE
   local line
-  line=$("$bin/limn_bench_frames" --model "$1" --copies 60 --size 1280x800 --coverage 0.5 --method "$2" \
-    --tolerance "$3" --samples 1 --seconds 0.4 2>/dev/null | tr '\n' ' ') || return 0
-  printf 'model=%s method=%s tolerance=%s %s\n' "$1" "$2" "$3" "$line"
+  line=$(frame_run "$1" "$2" --scale "$3" --method "$4" --tolerance "$5" --seconds 0.4) || return 0
+  printf 'model=%s method=%s tolerance=%s %s\n' "$1" "$4" "$5" "$line"
 }
 frames() {
-  local model round
+  local model round scale
   for model in builtin:icosphere-320 builtin:knot-480 builtin:torus-576 builtin:pawn; do
+    scale=$(frame_scale $model 60)
     for round in 1 2; do
-      frame_line $model flat 0.25
+      frame_line $model 60 "$scale" flat 0.25
       for method in patches curves pn; do
-        for tolerance in 2 0.5 0.1; do frame_line $model $method $tolerance; done
+        for tolerance in 2 0.5 0.1; do frame_line $model 60 "$scale" $method $tolerance; done
       done
     done
   done
-  for round in 1 2; do  # one large mesh
-    for method in flat patches; do frame_line builtin:icosphere:7 $method 0.5; done
+  scale=$(frame_scale builtin:icosphere:8 1)  # one large mesh
+  for round in 1 2; do
+    for method in flat patches curves; do frame_line builtin:icosphere:8 1 "$scale" $method 0.5; done
   done
 }
 # key=value lines -> rows: least times per model, method and tolerance, beside the flat mesh's.
@@ -60,13 +63,13 @@ frame_rows() {
     key = v["model"] SUBSEP v["method"] SUBSEP v["tolerance"]
     if (!(key in least)) { order[++n] = key; least[key] = 1e30 }
     if (v["min_ms"] + 0 < least[key]) least[key] = v["min_ms"] + 0
-    median[key] = v["median_ms"] + 0; tris[key] = v["tris_in"] + 0; allocs[key] = v["allocs_per_frame"] + 0
-    if (v["method"] == "flat") { if (!(v["model"] in flat) || v["min_ms"] + 0 < flat[v["model"]]) flat[v["model"]] = v["min_ms"] + 0; flatTris[v["model"]] = v["tris_in"] + 0 }
+    median[key] = v["median_ms"] + 0; tris[key] = v["tris_drawn"] + 0; allocs[key] = v["allocs_per_frame"] + 0
+    if (v["method"] == "flat") { if (!(v["model"] in flat) || v["min_ms"] + 0 < flat[v["model"]]) flat[v["model"]] = v["min_ms"] + 0; flatTris[v["model"]] = v["tris_drawn"] + 0 }
   } END {
     printf "["
     for (i = 1; i <= n; ++i) {
       split(order[i], k, SUBSEP); key = order[i]; more = tris[key] - flatTris[k[1]]
-      printf "%s\n  {\"model\":\"%s\",\"method\":\"%s\",\"tolerance\":%s,\"min_ms\":%.4f,\"median_ms\":%.4f,\"times_flat\":%.4f,\"tris_in\":%d,\"ns_per_added_triangle\":%.1f,\"allocs_per_frame\":%d,\"disturbed\":%s}", \
+      printf "%s\n  {\"model\":\"%s\",\"method\":\"%s\",\"tolerance\":%s,\"min_ms\":%.4f,\"median_ms\":%.4f,\"times_flat\":%.4f,\"tris_drawn\":%d,\"ns_per_added_triangle\":%.1f,\"allocs_per_frame\":%.3f,\"disturbed\":%s}", \
         (i > 1 ? "," : ""), k[1], k[2], k[3], least[key], median[key], (flat[k[1]] > 0 ? least[key] / flat[k[1]] : 0), tris[key], \
         (more > 0 ? (least[key] - flat[k[1]]) * 1e6 / more : 0), allocs[key], (median[key] > 1.5 * least[key] ? "true" : "false")
     }
@@ -95,7 +98,7 @@ quick() { if ((SECONDS - start > $1)); then echo --quick; fi; }
 
 if [[ -x $bin/limn_bench_frames ]]; then
   say "frame table"
-  commands+=('{"result":"frames","command":"limn_bench_frames --model MODEL --copies 60 --size 1280x800 --coverage 0.5 --method METHOD --tolerance PX --samples 1 --seconds 0.4"}')
+  commands+=('{"result":"frames","command":"limn_bench_frames --model MODEL --copies 60 --size 1280x800 --scale S --method METHOD --tolerance PX --samples 1 --seconds 0.4"}')
   frames >"$results/frames.txt"
   frame_rows <"$results/frames.txt" >"$results/frames.json"
   grep -q 'model' "$results/frames.json" || rm -f "$results/frames.json"
