@@ -1,8 +1,9 @@
 // From distances in space to distances in pixels, with a guarantee.
 //
 // Based on: G. Wang, "The subdivision method for finding the intersection between two Bézier curves or
-// surfaces", 1984: a cubic's polyline of n equal steps is within sqrt(3)/... the second differences of its
-// control points over n². Differs in: perspective. Wang's bound holds for polynomial curves, the projection
+// surfaces", 1984: a cubic and its polyline of n equal steps are at most 3/4 of the largest second difference
+// of the control points over n² apart.
+// Differs in: perspective. Wang's bound holds for polynomial curves, the projection
 // of a cubic is a rational one. With c a point of the curve, l = c - δ the point of its chord at the same
 // parameter, z the depth and s = l_xy / l_z,
 //

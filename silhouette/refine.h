@@ -40,7 +40,7 @@ struct Parameters {
   Method method = Method::kPatches;
   float tolerance = 0.25f;           ///< guaranteed distance in pixels, >= 0; used when segments == 0
   int segments = 0;                  ///< fixed count per edge, 1 … kMaxSegments; 0 = from the tolerance
-  float beta = 0.05f;                ///< constant β of (2), >= 0
+  float beta = 0.05f;                ///< constant β of (2), >= 0; the paper's 0.25 draws the same outline
   float wedgeDegrees = 0;            ///< > 0: β per edge from the wedge angle φ, (3)
   std::span<const float> edgeBetas;  ///< not empty: β of every edge of the topology, before the two above
   Silhouetteness silhouetteness = Silhouetteness::kContour;
@@ -88,7 +88,7 @@ struct RefinedStream {
 struct RefineReport {
   std::size_t curvedTriangles = 0;   ///< of the mesh, replaced
   std::size_t refinedTriangles = 0;  ///< in the stream
-  std::size_t smoothEdges = 0;       ///< alpha > 0
+  std::size_t smoothEdges = 0;       ///< alpha > 0, and a bulge that may pass the tolerance
   std::size_t cappedEdges = 0;       ///< wanted more than kMaxSegments segments
   double classifyMs = 0, refineMs = 0;
 };
