@@ -25,15 +25,18 @@ class Budget {
   /// For a model whose file and external files hold `inputBytes`.
   explicit Budget(std::size_t inputBytes) : left_(kBase + kPerByte * inputBytes) {}
 
+  /// Another external file of `inputBytes` was read.
+  void grow(std::size_t inputBytes) { left_ += kPerByte * inputBytes; }
   /// `bytes` <= left().
   void take(std::size_t bytes) { left_ -= bytes; }
   std::size_t left() const { return left_; }
 
  private:
-  // One picture of 4096 x 4096 pixels with its mip levels, whatever it compresses to; and 64 times the input:
-  // positions of three bytes become positions, normals and tangents of 40.
-  static constexpr std::size_t kBase = 96U << 20;
-  static constexpr std::size_t kPerByte = 64;
+  // Whatever the file's size, one picture of 2048 x 2048 pixels while its mip levels are built; and 256 times
+  // the input: a JPEG of a fifth of a byte per pixel becomes 40 bytes for a while, positions of three bytes
+  // positions, normals and tangents of 40. From 64 KiB come at most 176 MiB.
+  static constexpr std::size_t kBase = 160U << 20;
+  static constexpr std::size_t kPerByte = 256;
   std::size_t left_;
 };
 
@@ -61,6 +64,8 @@ class GltfDocument {
   [[noreturn]] void refuse(const std::string& place, const std::string& what) const;
   /// Takes `bytes` from the budget or refuses the file.
   void charge(std::size_t bytes, const std::string& place);
+  /// An external file of `inputBytes` was read: as much more may be made of it.
+  void grow(std::size_t inputBytes) { budget_.grow(inputBytes); }
   /// Refuses the file if `bytes` are not left, without taking them.
   void checkRoom(std::size_t bytes, const std::string& place) const;
   void notice(std::string sentence) { notices.push_back(std::move(sentence)); }

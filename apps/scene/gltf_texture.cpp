@@ -69,6 +69,7 @@ class ImageReader {
     std::optional<std::vector<std::uint8_t>> bytes = readFileBytes(path, kLargestImageFile);
     if (!bytes) document_.refuse(place_ + "/uri", inQuotes(image_.uri) + " cannot be read; may you read it?");
     file = std::move(*bytes);
+    document_.grow(file.size());
     return file;
   }
 
