@@ -17,7 +17,8 @@ constexpr float kSharpTurn = 0.9f;     // cosine: a polyline that turns more is 
 constexpr float kSharpestTurn = 0.5f;  // unless it turns everywhere so, as a coarse circle does, up to this
 constexpr float kRegularTurn = 0.4f;   // of 1 - cosine: what both points beside it must have
 
-// The feature edges at a point, if they are two.
+// The edges that are features at a point, if they are two. (The edges that meet at the tip of a cone are features
+// there and not at its rim.)
 struct Meeting {
   std::array<std::uint32_t, 2> edges{kNone, kNone};
   std::uint32_t count = 0;
@@ -64,7 +65,8 @@ bool FeatureGraph::isInside(std::uint32_t point) const {
 
 // What the curve adds to a third of the edge at an end; zero at corners, open ends and cuts.
 vec3 FeatureGraph::endOffset(std::uint32_t e, std::uint32_t point) const {
-  if (!isInside(point)) return vec3(0.0f);
+  const Edge& edge = topology.edges()[e];
+  if (!edge.feature[edge.point[0] == point ? 0 : 1] || !isInside(point)) return vec3(0.0f);
   const Meeting& meeting = meetings[point];
   const vec3 on = awayFrom(e, point), to = -awayFrom(meeting.edges[meeting.edges[0] == e ? 1 : 0], point);
   const vec3 tangent = glm::normalize(circleTangent(to, on));
@@ -94,8 +96,9 @@ void computeFeatureCurves(const Mesh& mesh, const Topology& topology, const Crew
   FeatureGraph graph{mesh, topology, std::vector<Meeting>(topology.pointCount())};
   for (std::uint32_t e = 0; e < edges.size(); ++e) {
     if (!edges[e].isFeature()) continue;
-    for (const std::uint32_t point : edges[e].point) {
-      Meeting& meeting = graph.meetings[point];
+    for (std::size_t end = 0; end < 2; ++end) {
+      if (!edges[e].feature[end]) continue;
+      Meeting& meeting = graph.meetings[edges[e].point[end]];
       if (meeting.count < 2) meeting.edges[meeting.count] = e;
       ++meeting.count;
     }

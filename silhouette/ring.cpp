@@ -13,11 +13,11 @@ namespace {
 using glm::dot;
 using glm::vec3;
 
-constexpr float kBeta = 0.02f;    // of (2): narrow, what matters is the outline
-constexpr float kFacing = 0.05f;  // sine of the angle from the contour at which an end's fade is over
+constexpr float kBeta = 0.02f;   // of (2): narrow, what matters is the outline
+constexpr float kFacing = 0.2f;  // sine of the angle from the contour at which an end's fade is over
 constexpr float kStaysBehind =
     0.01f;  // edge lengths by which the curve's middle must pass the segment's to count
-constexpr float kStandsOut = 0.03f;  // and to count wholly
+constexpr float kStandsOut = 0.06f;  // and to count wholly
 
 }  // namespace
 
@@ -58,12 +58,12 @@ float RingTest::alpha(std::uint32_t e) const {
   const Edge& edge = topology.edges()[e];
   if (edge.boundary || edge.isFeature() || curves.curves[e] == CurveOffsets{}) return 0.0f;
   const EdgeVertices& v = curves.vertices[e];
-  if (visible[v[0][0]] != visible[v[0][1]] || visible[v[1][0]] != visible[v[1][1]]) return 0.0f;
   const vec3 w = towardsEye(view, 0.5f * (mesh.positions[v[0][0]] + mesh.positions[v[0][1]]));
   const float length2 = dot(w, w);
   const float product =
       dot(w, curves.faceNormals[edge.faces[0].triangle]) * dot(w, curves.faceNormals[edge.faces[1].triangle]);
   if (!(product < kBeta * length2)) return 0.0f;
+  if (visible[v[0][0]] != visible[v[0][1]] || visible[v[1][0]] != visible[v[1][1]]) return 0.0f;
   const float nearest = std::min(std::abs(facingOf(v[0][0])), std::abs(facingOf(v[0][1])));
   const float alpha = silhouettenessOf(product / length2, kBeta) * smoothStep(0.0f, kFacing, nearest);
   if (!(alpha > 0.0f)) return 0.0f;

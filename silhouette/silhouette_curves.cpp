@@ -208,7 +208,9 @@ CrossedEdge Pass::crossedEdge(std::uint32_t e) {
   for (std::size_t face = 0; face < 2; ++face) {
     const std::array<std::uint32_t, 2>& ends = v[face];
     record.crosses[face] = scratch.visible[ends[0]] != scratch.visible[ends[1]];
-    if (record.crosses[face])
+    if (face == 1 && !record.seam)
+      record.parameter[1] = record.parameter[0];
+    else if (record.crosses[face])
       record.parameter[face] = contourParameter(view, {mesh.positions[ends[0]], mesh.positions[ends[1]]},
                                                 {mesh.normals[ends[0]], mesh.normals[ends[1]]});
   }
