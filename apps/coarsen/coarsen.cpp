@@ -2,6 +2,7 @@
 #include "apps/coarsen/coarsen.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 
 #include "apps/coarsen/fit.h"
@@ -122,6 +123,18 @@ void fitCurves(const Fine& fine, const FitSettings& settings, Workers& workers, 
   tell(progress, 0.0, 1.0, 1.0);
 }
 
+scene::Mesh reduced(const scene::Mesh& fine, const Fine& prepared, std::size_t triangles, Workers& workers,
+                    Report* report, const Progress& progress) {
+  const std::vector<Index> partOf = partOfTriangles(fine);
+  const SimplifyInput input{fine.indices, fine.normals,     prepared.pointOf,
+                            partOf,       prepared.surface, prepared.weights};
+  const Simplified simplified =
+      simplify(input, triangles, [&](double part) { tell(progress, kWeighed, kSimplified, part); });
+  scene::Mesh coarse = assemble(fine, partOf, simplified);
+  fitCurves(prepared, FitSettings{}, workers, coarse, report, progress);
+  return coarse;
+}
+
 }  // namespace
 
 scene::Mesh coarsenMesh(const scene::Mesh& fine, const Settings& settings, Workers& workers, Report* report,
@@ -130,14 +143,44 @@ scene::Mesh coarsenMesh(const scene::Mesh& fine, const Settings& settings, Worke
   require(fine.indices.size() >= 3, "a mesh with triangles");
   const Fine prepared(fine, workers);
   tell(progress, 0.0, kWeighed, 1.0);
-  const std::vector<Index> partOf = partOfTriangles(fine);
-  const SimplifyInput input{fine.indices, fine.normals,     prepared.pointOf,
-                            partOf,       prepared.surface, prepared.weights};
-  const Simplified simplified =
-      simplify(input, settings.triangles, [&](double part) { tell(progress, kWeighed, kSimplified, part); });
-  scene::Mesh coarse = assemble(fine, partOf, simplified);
-  fitCurves(prepared, FitSettings{}, workers, coarse, report, progress);
-  return coarse;
+  return reduced(fine, prepared, settings.triangles, workers, report, progress);
+}
+
+std::optional<scene::Mesh> coarsenWithin(const scene::Mesh& fine, const OutlinePromise& promise,
+                                         Workers& workers, Report* report, const Progress& progress) {
+  require(fine.indices.size() >= 3, "a mesh with triangles");
+  require(promise.pixels > 0.0 && promise.width > 0 && promise.height > 0, "a promise in pixels");
+  constexpr int kSpread = 60, kByChance = 1000;
+  constexpr std::uint64_t kSeed = 1;
+  constexpr double kStep = 1.05;
+  const Fine prepared(fine, workers);
+  const std::vector<dvec3> spread = viewDirections(kSpread), byChance = viewDirections(kByChance, kSeed);
+  const double most = static_cast<double>(prepared.surface.triangleCount());
+  const auto keeps = [&](const scene::Mesh& small, const std::vector<dvec3>& views) {
+    return brokenViews(fine, small, promise, views, workers) == 0;
+  };
+  const auto at = [&](double triangles) {
+    return reduced(fine, prepared, std::max<std::size_t>(4, static_cast<std::size_t>(triangles)), workers,
+                   report, {});
+  };
+
+  // Bracket by doubling, halve the bracket (of logarithms), then walk up until a thousand views agree.
+  double low = 4.0, high = 250.0;
+  while (high < most && !keeps(at(high), spread)) {
+    low = high;
+    high *= 2.0;
+    tell(progress, 0.0, 0.5, 1.0 - 250.0 / high);
+  }
+  while (high > low * kStep * kStep) {
+    const double middle = std::sqrt(low * high);
+    (keeps(at(middle), spread) ? high : low) = middle;
+    tell(progress, 0.5, 0.9, 1.0 / (1.0 + std::log(high / low)));
+  }
+  for (; high < most; high *= kStep) {
+    scene::Mesh small = at(high);
+    if (keeps(small, spread) && keeps(small, byChance)) return small;
+  }
+  return std::nullopt;
 }
 
 std::vector<std::size_t> shareTriangles(const std::vector<scene::Mesh>& meshes, std::size_t triangles) {

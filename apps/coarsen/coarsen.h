@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "apps/coarsen/guard.h"
+#include "apps/coarsen/outline_check.h"
 #include "apps/scene/scene.h"
 #include "raster/base/workers.h"
 
@@ -27,6 +29,12 @@ using Progress = std::function<void(double)>;
 /// threads. Throws std::invalid_argument for a mesh without triangles or settings out of range.
 scene::Mesh coarsenMesh(const scene::Mesh& fine, const Settings& settings, Workers& workers,
                         Report* report = nullptr, const Progress& progress = {});
+
+/// Coarsens `fine` to the least number of triangles (to about 5 %) that keeps the promise over 60 views spread over the
+/// sphere and 1,000 by chance. Nothing where that takes as many triangles as the fine mesh has.
+std::optional<scene::Mesh> coarsenWithin(const scene::Mesh& fine, const OutlinePromise& promise,
+                                         Workers& workers, Report* report = nullptr,
+                                         const Progress& progress = {});
 
 /// How many triangles each mesh of a scene gets of `triangles`: in proportion to what it has, at least 4 and at most that.
 std::vector<std::size_t> shareTriangles(const std::vector<scene::Mesh>& meshes, std::size_t triangles);

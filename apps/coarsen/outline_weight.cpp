@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "apps/coarsen/spans.h"
 #include "raster/base/elementary.h"
 
 namespace limn::coarsen {
@@ -46,23 +47,11 @@ void project(const Surface& surface, const dvec3& along, const dvec3& center, do
   }
 }
 
-// Fills the pixels whose centres lie in the triangle. Which of several triangles a pixel keeps does not matter: at an
-// outline all of them touch it.
-void fill(Picture& picture, Index t, dvec2 a, dvec2 b, dvec2 c) {
-  if (b.y < a.y) std::swap(a, b);
-  if (c.y < b.y) std::swap(b, c);
-  if (b.y < a.y) std::swap(a, b);
-  const int first = std::max(0, static_cast<int>(std::ceil(a.y - 0.5)));
-  const int end = std::min(kSize, static_cast<int>(std::ceil(c.y - 0.5)));
-  for (int row = first; row < end; ++row) {
-    const double y = row + 0.5;
-    const double along = a.x + (c.x - a.x) * (y - a.y) / (c.y - a.y);
-    const double across = y < b.y ? a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y)
-                                  : (c.y > b.y ? b.x + (c.x - b.x) * (y - b.y) / (c.y - b.y) : b.x);
-    const int from = std::max(0, static_cast<int>(std::ceil(std::min(along, across) - 0.5)));
-    const int to = std::min(kSize, static_cast<int>(std::ceil(std::max(along, across) - 0.5)));
+// Which of several triangles a pixel keeps does not matter: at an outline all of them touch it.
+void fill(Picture& picture, Index t, const dvec2& a, const dvec2& b, const dvec2& c) {
+  forSpans(kSize, kSize, a, b, c, [&](int row, int from, int to) {
     for (int x = from; x < to; ++x) picture.triangle[static_cast<std::size_t>(row * kSize + x)] = t;
-  }
+  });
 }
 
 // A point to the corners of every triangle at a covered pixel with an empty neighbour.

@@ -16,10 +16,12 @@ namespace limn::program {
 namespace {
 
 void checkOptions(const CoarsenOptions& o) {
-  if (!o.triangles && !o.coarse)
-    throw UsageError("say how small: --triangles N, or --coarse FILE for a mesh of your own");
-  if (o.triangles && o.coarse)
-    throw UsageError("--triangles and --coarse: a mesh of your own stays as it is; name one");
+  const int ways = (o.triangles ? 1 : 0) + (o.coarse ? 1 : 0) + (o.error ? 1 : 0);
+  if (ways == 0)
+    throw UsageError("say how small: --triangles N, --error PX, or --coarse FILE for a mesh of your own");
+  if (ways > 1) throw UsageError("--triangles, --error and --coarse exclude each other; name one");
+  if (o.at && !o.error)
+    throw UsageError("--at: says in which window --error counts pixels; give --error, too");
   if (o.output == "-" && ::isatty(STDOUT_FILENO) == 1)
     throw UsageError("-o - would print a GLB on the terminal; name a file or a pipe");
 }
@@ -53,16 +55,8 @@ class Coarsening {
   std::vector<std::uint8_t> run() {
     const coarsen::Source fine = open(options_.fine);
     if (!options_.coarse) {
-      const std::vector<std::size_t> shares = coarsen::shareTriangles(fine.scene.meshes, *options_.triangles);
       std::vector<scene::Mesh> meshes;
-      for (std::size_t m = 0; m < fine.scene.meshes.size(); ++m) {
-        const scene::Mesh& mesh = fine.scene.meshes[m];
-        coarsen::Report report;
-        meshes.push_back(mesh.indices.empty()
-                             ? mesh
-                             : coarsen::coarsenMesh(mesh, {shares[m]}, workers_, &report, part(fine, m)));
-        summary.add(report, meshes.back());
-      }
+      for (std::size_t m = 0; m < fine.scene.meshes.size(); ++m) meshes.push_back(smaller(fine, m));
       return coarsen::withMeshes(fine, meshes);
     }
     coarsen::Source coarse = open(*options_.coarse);
@@ -92,6 +86,26 @@ class Coarsening {
     if (!options_.quiet)
       for (const std::string& notice : source.scene.notices) printMessage(source.name + ": " + notice);
     return source;
+  }
+
+  scene::Mesh smaller(const coarsen::Source& fine, std::size_t m) {
+    const scene::Mesh& mesh = fine.scene.meshes[m];
+    if (mesh.indices.empty()) return mesh;
+    coarsen::Report report;
+    std::optional<scene::Mesh> small;
+    if (options_.error) {
+      const auto [width, height] = options_.at.value_or(std::pair(1280, 800));
+      small =
+          coarsen::coarsenWithin(mesh, {*options_.error, width, height}, workers_, &report, part(fine, m));
+      if (!small)
+        throw UsageError("--error: " + numberText(*options_.error) + " pixels take as many triangles as " +
+                         options_.fine + " has; allow more");
+    } else {
+      const std::size_t share = coarsen::shareTriangles(fine.scene.meshes, *options_.triangles)[m];
+      small = coarsen::coarsenMesh(mesh, {share}, workers_, &report, part(fine, m));
+    }
+    summary.add(report, *small);
+    return *std::move(small);
   }
 
   coarsen::Progress part(const coarsen::Source& fine, std::size_t mesh) {

@@ -296,6 +296,10 @@ CLI::App* addCoarsen(CLI::App& app, CoarsenOptions& o) {
             [&o](const std::string& text) {
               o.triangles = static_cast<std::size_t>(parseInteger(text, 4, 1'000'000'000));
             });
+  group.add("--error", "PX", "instead: as few triangles as keep the outline within so many pixels", "",
+            [&o](const std::string& text) { o.error = positive(text, false); });
+  group.add("--at", "WxH", "the window whose pixels --error counts", "1280x800",
+            [&o](const std::string& text) { o.at = parseSize(text); });
   group.add("--coarse", "FILE", "take this model as it is and fit curves to it, instead of simplifying FINE",
             "", [&o](const std::string& text) { o.coarse = text; });
   group.add(
@@ -304,6 +308,7 @@ CLI::App* addCoarsen(CLI::App& app, CoarsenOptions& o) {
   group.addFlag("--quiet", "no notes and no progress", o.quiet);
   coarsen->footer(R"(Examples:
   limn coarsen statue.glb -o small.glb --triangles 500
+  limn coarsen statue.glb -o small.glb --error 1 --at 800x600
   limn coarsen statue.glb -o mine.glb --coarse low-poly.glb      curves for a mesh of your own
   limn render small.glb -o small.png
 

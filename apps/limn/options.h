@@ -53,6 +53,8 @@ struct CoarsenOptions {
   std::string output;
   std::optional<std::size_t> triangles;
   std::optional<std::string> coarse;
+  std::optional<double> error;            ///< pixels
+  std::optional<std::pair<int, int>> at;  ///< the window in which they count
   int threads = 1;
   bool quiet = false;
 };
