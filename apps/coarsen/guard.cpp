@@ -92,9 +92,8 @@ GuardReport guardPatches(const Surface& surface, Workers& workers, PatchNet& net
   constexpr int kGentleRounds = 4;  // that halve; from there on patches become flat
   for (int round = 0;; ++round) {
     bool any = false;
-    const std::vector<Look> seen = looks;
     for (std::size_t t = 0; t < count; ++t) {
-      if (straight[t] || (!seen[t].folds && seen[t].distance <= limits[t])) continue;
+      if (straight[t] || (!looks[t].folds && looks[t].distance <= limits[t])) continue;
       any = mended[t] = true;
       straight[t] = round >= kGentleRounds;
       flatten(net, t, straight[t] ? 0.0 : 0.5);

@@ -19,7 +19,8 @@ PatchNet::PatchNet(std::vector<dvec3> points, std::vector<Index> corners,
     : controls(std::move(points)), pointCount_(controls.size()), corners_(std::move(corners)) {
   struct SideKey {
     Index low, high, side;
-    auto operator<=>(const SideKey&) const = default;
+    // The finding is in <compare>.
+    auto operator<=>(const SideKey&) const = default;  // NOLINT(modernize-use-nullptr)
   };
   std::vector<SideKey> sides;
   for (Index side = 0; side < corners_.size(); ++side) {

@@ -9,7 +9,7 @@ namespace {
 constexpr std::size_t kLeft = 34, kWidth = 96;
 
 /// `left` in its column, `right` broken into lines beside it.
-std::string row(std::string left, const std::string& right) {
+std::string row(const std::string& left, const std::string& right) {
   std::string text = "  " + left;
   std::size_t column = text.size();
   const std::string indent = '\n' + std::string(kLeft, ' ');
@@ -55,7 +55,7 @@ std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
 
 std::string HelpFormatter::make_usage(const CLI::App* app, std::string name) const {
   std::string text = "\nUsage: " + name;
-  if (app->get_options([](const CLI::Option* option) { return option->nonpositional(); }).size() > 0)
+  if (!app->get_options([](const CLI::Option* option) { return option->nonpositional(); }).empty())
     text += " [options]";
   for (const CLI::Option* option : app->get_options([](const CLI::Option* o) { return o->get_positional(); }))
     text += option->get_required() ? " " + option->get_name(true) : " [" + option->get_name(true) + "]";

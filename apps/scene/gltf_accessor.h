@@ -57,7 +57,7 @@ class AccessorReader {
 template <class Vector>
 std::vector<Vector> gather(GltfDocument& document, const AccessorReader& reader,
                            const std::vector<std::uint32_t>* elements) {
-  constexpr std::size_t kComponents = sizeof(Vector) / sizeof(float);
+  constexpr std::size_t kComponents = sizeof(Vector) / sizeof(float);  // NOLINT(bugprone-sizeof-expression)
   const std::size_t count = elements ? elements->size() : reader.count();
   document.charge(count * sizeof(Vector), reader.place());
   std::vector<Vector> result(count);

@@ -103,7 +103,7 @@ fs::path resolveUri(std::string_view uri, const fs::path& folder, std::string& p
   problem = uriProblem(uri);
   if (!problem.empty()) return {};
   const fs::path relative(percentDecoded(uri));
-  const fs::path path = folder / relative;
+  fs::path path = folder / relative;
   std::error_code error;
   if (!fs::is_regular_file(path, error))
     problem = "names no file beside the model or below; is it missing?";
