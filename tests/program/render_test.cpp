@@ -180,7 +180,7 @@ TEST_F(Render, OptionsChangeThePictureTheyShould) {
         Words{"--zoom", "1.1"}, Words{"--fov", "50"}, Words{"--ortho", "fit"}, Words{"--ortho", "3"},
         Words{"--eye", "3,3,3"}, Words{"--eye", "3,3,3", "--up", "1,0,0"}, Words{"--samples", "1"},
         Words{"--samples", "8"}, Words{"--background", "white"}, Words{"--light", "headlight"},
-        Words{"--light", "-1,0,0"}, Words{"--segments", "1"}, Words{"--tolerance", "0.02"},
+        Words{"--light", "-1,0,0"}, Words{"--segments", "7"}, Words{"--tolerance", "0.02"},
         Words{"--features", "off"}}) {
     const Result result = limn(frame + options);
     EXPECT_EQ(result.status, 0) << result.err;
