@@ -103,11 +103,6 @@ struct Pass {
   Pattern patternOf(std::size_t triangle, const Patch& patch) const;
 };
 
-void mark(std::vector<std::uint64_t>& bits, std::uint32_t triangle) {
-  std::atomic_ref<std::uint64_t>(bits[triangle / 64])
-      .fetch_or(std::uint64_t{1} << (triangle % 64), std::memory_order_relaxed);
-}
-
 void Pass::run() {
   const auto start = std::chrono::steady_clock::now();
   classify();
@@ -157,7 +152,7 @@ void Pass::measureEdges() {
         measure(smooth);
         scratch.recordOf[smooth.edge] = record++;
         for (const Side& face : topology.edges()[smooth.edge].faces)
-          if (face.triangle != kNone) mark(scratch.candidates, face.triangle);
+          if (face.triangle != kNone) markTriangle(scratch.candidates, face.triangle);
       }
     }
   });

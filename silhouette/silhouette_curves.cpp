@@ -79,11 +79,6 @@ struct SideView {
   }
 };
 
-void markReplaced(RefinedStream& stream, std::uint32_t triangle) {
-  std::atomic_ref<std::uint64_t>(stream.replaced[triangle / 64])
-      .fetch_or(std::uint64_t{1} << (triangle % 64), std::memory_order_relaxed);
-}
-
 // One view's refinement; all it refers to outlives it.
 struct Pass {
   const Mesh& mesh;
@@ -194,7 +189,7 @@ void Pass::findEdges() {
     if (record.segments == 1 && !record.crosses[0] && !record.crosses[1]) return;
     scratch.recordOf[e] = at;
     for (const Side& face : edges[e].faces)
-      if (face.triangle != kNone) markReplaced(stream, face.triangle);
+      if (face.triangle != kNone) markTriangle(stream.replaced, face.triangle);
   });
   report.smoothEdges = scratch.edges.size();
 }
@@ -315,7 +310,7 @@ void Pass::lowerPoints() {
 void Pass::lower(std::uint32_t point, const vec3& displacement) {
   for (const std::uint32_t side : prepared.blocking.sidesFrom(point)) {
     const std::uint32_t vertex = mesh.indices[side];
-    markReplaced(stream, side / 3);
+    markTriangle(stream.replaced, side / 3);
     if (scratch.loweredOf[vertex] != kNone) continue;
     const auto at = static_cast<std::uint32_t>(scratch.lowered.size());
     scratch.loweredOf[vertex] = at;

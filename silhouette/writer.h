@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -79,5 +80,11 @@ class StreamWriter {
   bool quadratic_;
   RefinedStream& stream_;
 };
+
+/// Sets the bit of a triangle; blocks that run side by side may share a word.
+inline void markTriangle(std::vector<std::uint64_t>& bits, std::uint32_t triangle) {
+  std::atomic_ref<std::uint64_t>(bits[triangle / 64])
+      .fetch_or(std::uint64_t{1} << (triangle % 64), std::memory_order_relaxed);
+}
 
 }  // namespace limn::silhouette
