@@ -49,6 +49,7 @@ struct Parameters {
   bool features = true;     ///< feature edges smooth from every viewpoint
   bool boundaries = false;  ///< boundary edges likewise
   ShadingNormals shadingNormals = ShadingNormals::kLinear;
+  bool listContour = false;  ///< fill RefinedStream::contour
 };
 
 inline constexpr int kMaxSegments = 64;  ///< per edge; past it the tolerance is no longer guaranteed
@@ -62,6 +63,13 @@ struct Origin {
   glm::vec2 weights{0.0f};
 };
 
+/// A straight piece of the outline as silhouette curves draw it, from vertex to vertex, numbered as in
+/// RefinedStream::indices.
+struct ContourLine {
+  std::uint32_t from = 0, to = 0;
+  bool crossesTriangle = false;  ///< of a segment; else of a bridge, which replaces an edge
+};
+
 /// Triangles that replace some of the mesh's. Everything that is not replaced is drawn as it is.
 struct RefinedStream {
   std::vector<glm::vec3> positions;  ///< of new vertices, model space
@@ -73,6 +81,7 @@ struct RefinedStream {
   std::vector<std::uint32_t> indices;
   std::vector<std::uint32_t> sourceTriangles;  ///< one per triangle, ascending
   std::vector<std::uint64_t> replaced;         ///< bit per mesh triangle, triangleCount/64 rounded up words
+  std::vector<ContourLine> contour;            ///< of Method::kCurves, if Parameters::listContour
 
   std::size_t triangleCount() const { return indices.size() / 3; }
   bool isReplaced(std::size_t triangle) const {

@@ -92,12 +92,6 @@ struct CutOutline {
   CutOutline(const Outline& o, const Cut& c)
       : outline(o), cut(c), out(c.lone), across((c.lone + 1) % 3), back((c.lone + 2) % 3) {}
 
-  // Vertex `k` of a side: its first corner, the vertices on it, its last corner.
-  std::uint32_t onSide(std::size_t side, std::size_t k) const {
-    if (k == 0) return outline.corners[side];
-    if (k > outline.counts[side]) return outline.corners[(side + 1) % 3];
-    return outline.sides[side][k - 1];
-  }
   static unsigned sideLine(std::size_t side) { return 1u << side; }
   // The sides that vertex k of a side lies on.
   unsigned linesOf(std::size_t side, std::size_t k) const {
@@ -105,8 +99,8 @@ struct CutOutline {
     if (k > outline.counts[side]) return sideLine(side) | sideLine((side + 1) % 3);
     return sideLine(side);
   }
-  std::uint32_t first() const { return onSide(out, cut.ends[0]); }
-  std::uint32_t last() const { return onSide(back, cut.ends[1]); }
+  std::uint32_t first() const { return outline.onSide(out, cut.ends[0]); }
+  std::uint32_t last() const { return outline.onSide(back, cut.ends[1]); }
 
   // Nothing on the sides but the segment's ends.
   bool isPlain() const {
@@ -168,7 +162,7 @@ void remesh(const Outline& outline, const Cut& cut, const View& view, const Plac
   const unsigned inner = kSegmentLine | (o.linesOf(o.out, cut.ends[0]) & o.linesOf(o.back, cut.ends[1]));
   const bool backToLone = cut.ends[1] > outline.counts[o.back], outToB = cut.ends[0] > outline.counts[o.out];
   const auto add = [&](Polygon& polygon, std::size_t side, std::size_t k, bool onSegment) {
-    polygon.add(o.onSide(side, k), o.linesOf(side, k) | (onSegment ? kSegmentLine : 0u), places);
+    polygon.add(outline.onSide(side, k), o.linesOf(side, k) | (onSegment ? kSegmentLine : 0u), places);
   };
 
   // From A to the first end, along the segment, and from its last end back.

@@ -33,6 +33,11 @@ struct Outline {
   /// The middle, used where two or three sides have vertices and there is no segment.
   std::uint32_t centre = kNone;
 
+  /// Vertex `k` of a side: its first corner, the vertices on it, its last corner.
+  std::uint32_t onSide(std::size_t side, std::size_t k) const {
+    if (k == 0) return corners[side];
+    return k > counts[side] ? corners[(side + 1) % 3] : sides[side][k - 1];
+  }
   bool wantsCentre() const { return (counts[0] > 0) + (counts[1] > 0) + (counts[2] > 0) > 1; }
 };
 

@@ -102,6 +102,7 @@ struct Pass {
   void lower(std::uint32_t point, const vec3& displacement);
   void placeEdges();
   void placePieces();
+  void listContour();
   void cleanUp();
 
   CrossedEdge crossedEdge(std::uint32_t e);
@@ -120,6 +121,9 @@ struct Pass {
   std::uint32_t steps(const vec3& p, const vec3& q, const CurveOffsets& offsets);
   EdgeCurve curveOf(const CrossedEdge& record) const;
   SideView sideOf(std::uint32_t triangle, std::size_t side) const;
+  std::uint32_t drawnVertex(std::uint32_t v) const {  // of a vertex of the mesh
+    return scratch.loweredOf[v] == kNone ? v : firstNew() + scratch.loweredOf[v];
+  }
   std::uint32_t firstNew() const { return static_cast<std::uint32_t>(mesh.positions.size()); }
 };
 
@@ -135,6 +139,7 @@ void Pass::run() {
   placeEdges();
   listReplaced(scratch.triangles);
   placePieces();
+  if (parameters.listContour) listContour();
   cleanUp();
 }
 
@@ -416,9 +421,7 @@ bool Pass::cutOf(std::uint32_t triangle, const Outline& outline, Cut& cut) const
 Outline Pass::outlineOf(std::uint32_t triangle) const {
   Outline outline;
   for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint32_t vertex = mesh.indices[3 * std::size_t{triangle} + k];
-    const std::uint32_t lowered = scratch.loweredOf[vertex];
-    outline.corners[k] = lowered == kNone ? vertex : firstNew() + lowered;
+    outline.corners[k] = drawnVertex(mesh.indices[3 * std::size_t{triangle} + k]);
     const SideView side = sideOf(triangle, k);
     outline.counts[k] = side.edge != nullptr ? side.edge->count : 0;
     for (std::size_t i = 0; i < outline.counts[k]; ++i) outline.sides[k][i] = firstNew() + side.vertex(i);
@@ -474,6 +477,31 @@ void Pass::writeCentre(std::uint32_t at, std::uint32_t triangle) {
     patch.sides[k] = {offsets[side.back ? 1 : 0], offsets[side.back ? 0 : 1]};
   }
   writer.vertex(at, patch.point(third, third, third), {triangle, {third, third}}, kLinear);
+}
+
+// Bridges in the order of their edges, then segments in that of their triangles.
+void Pass::listContour() {
+  std::uint32_t last = 0;
+  const auto lineTo = [&](std::uint32_t vertex, bool crossesTriangle) {
+    if (vertex != last) stream.contour.push_back({last, vertex, crossesTriangle});
+    last = vertex;
+  };
+  for (const CrossedEdge& edge : scratch.edges) {
+    if (!edge.crosses[0] && !edge.crosses[1]) continue;
+    const std::array<std::uint32_t, 2>& ends = prepared.vertices[edge.edge][0];
+    last = drawnVertex(ends[0]);
+    for (std::uint32_t k = 0; k < edge.count; ++k) lineTo(firstNew() + edge.firstVertex + k, false);
+    lineTo(drawnVertex(ends[1]), false);
+  }
+  for (std::size_t k = 0; k < scratch.triangles.size(); ++k) {
+    const Outline outline = outlineOf(scratch.triangles[k]);
+    Cut cut;
+    if (!cutOf(scratch.triangles[k], outline, cut)) continue;
+    last = outline.onSide(cut.lone, cut.ends[0]);
+    for (std::uint32_t v = scratch.slots[k].vertex; v < scratch.slots[k + 1].vertex; ++v)
+      lineTo(firstNew() + v, true);
+    lineTo(outline.onSide((cut.lone + 2) % 3, cut.ends[1]), true);
+  }
 }
 
 void Pass::cleanUp() {

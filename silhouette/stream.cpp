@@ -23,6 +23,7 @@ void RefinedStream::clear(std::size_t meshTriangles) {
   origins.clear();
   indices.clear();
   sourceTriangles.clear();
+  contour.clear();
   replaced.assign((meshTriangles + 63) / 64, 0);
 }
 

@@ -52,15 +52,8 @@ const std::string& aovName(Aov aov) {
 
 std::vector<Aov> parseAovs(std::string_view text) {
   std::vector<Aov> aovs;
-  for (;;) {
-    const std::size_t comma = text.find(',');
-    const auto aov = static_cast<Aov>(parseChoice(text.substr(0, comma), names()));
-    if (std::find(aovs.begin(), aovs.end(), aov) != aovs.end())
-      throw UsageError(aovName(aov) + " is named twice");
-    aovs.push_back(aov);
-    if (comma == std::string_view::npos) return aovs;
-    text.remove_prefix(comma + 1);
-  }
+  for (const int choice : parseChoices(text, names())) aovs.push_back(static_cast<Aov>(choice));
+  return aovs;
 }
 
 void wantPlanes(const std::vector<Aov>& aovs, scene::Planes& planes) {

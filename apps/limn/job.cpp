@@ -60,6 +60,13 @@ std::string lightText(const scene::FrameSettings& settings) {
   }
 }
 
+std::string overlayText(const scene::OverlaySet& overlays) {
+  std::string text;
+  for (std::size_t i = 0; i < overlays.size(); ++i)
+    if (overlays[i]) text += (text.empty() ? " --overlay " : ",") + overlayNames()[i];
+  return text;
+}
+
 const char* onOff(bool on) {
   return on ? "on" : "off";
 }
@@ -208,7 +215,8 @@ std::string Job::describe() const {
   }
   text += refinementText(o.settings.refinement);
   text += " --samples " + std::to_string(o.settings.samples) + " --light " + lightText(o.settings);
-  return text + " --background " + shellWord(colorText(o.settings.background));
+  text += " --background " + shellWord(colorText(o.settings.background));
+  return text + overlayText(o.settings.overlays);
 }
 
 std::size_t drawnTriangles(const scene::Scene& scene) {

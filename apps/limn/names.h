@@ -23,4 +23,10 @@ inline const std::vector<std::string>& shadingNormalsNames() {
   return names;
 }
 
+/// In the order in which they are drawn.
+inline const std::vector<std::string>& overlayNames() {
+  static const std::vector<std::string> names = {"wire", "features", "edges", "contour"};
+  return names;
+}
+
 }  // namespace limn::program

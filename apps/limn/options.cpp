@@ -95,6 +95,15 @@ void addPictureOptions(CLI::App& app, RenderOptions& o) {
   picture.add("--background", "COLOR", "#rrggbb, #rrggbbaa, a basic name like white, or transparent",
               "transparent", [&o](const std::string& text) { o.job.settings.background = parseColor(text); });
   picture.add(
+      "--overlay", "wire,edges,contour,features",
+      "lines over the picture: the edges of all drawn triangles; silhouette edges coloured by their "
+      "silhouetteness, from blue to red; where the shading normals turn away (curves: bridges and segments); "
+      "creases",
+      "none", [&o](const std::string& text) {
+        for (const int choice : parseChoices(text, overlayNames()))
+          o.job.settings.overlays[static_cast<std::size_t>(choice)] = true;
+      });
+  picture.add(
       "--light", "headlight|file|x,y,z",
       "a light at the eye, the file's own (or one from the upper right where it has none), or a direction "
       "towards the light",

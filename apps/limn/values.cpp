@@ -257,6 +257,19 @@ int parseChoice(std::string_view text, std::span<const std::string> names) {
                    (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
 }
 
+std::vector<int> parseChoices(std::string_view text, std::span<const std::string> names) {
+  std::vector<int> choices;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    const int choice = parseChoice(text.substr(0, comma), names);
+    if (std::find(choices.begin(), choices.end(), choice) != choices.end())
+      throw UsageError(names[static_cast<std::size_t>(choice)] + " is named twice");
+    choices.push_back(choice);
+    if (comma == std::string_view::npos) return choices;
+    text.remove_prefix(comma + 1);
+  }
+}
+
 std::string numberText(double value) {
   std::array<char, 32> buffer{};
   const auto [end, error] =

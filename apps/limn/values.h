@@ -68,6 +68,9 @@ class FrameList {
 /// One of `names` by its place in the list; the message for another one suggests the nearest.
 int parseChoice(std::string_view text, std::span<const std::string> names);
 
+/// "depth,id": some of `names`, in the order given, none twice.
+std::vector<int> parseChoices(std::string_view text, std::span<const std::string> names);
+
 /// The shortest text that reads back as the same number.
 std::string numberText(double value);
 std::string vectorText(const glm::dvec3& value);

@@ -121,6 +121,8 @@ struct FrameDrawer::State {
   std::vector<silhouette::RefineTask> tasks;
   std::vector<raster::Draw> draws;
   std::vector<raster::Light> lights;
+  OverlayLines overlays;
+  std::vector<float> alphas;          ///< of the instance whose overlay is being added
   silhouette::Parameters parameters;  ///< of the last frame
 
   State(const Scene& drawn, int threads, const raster::Tuning& tuning)
@@ -136,6 +138,8 @@ struct FrameDrawer::State {
 
   void place(const Instance& instance, const CameraView& camera, InstanceResources& out);
   raster::Draw describe(const Instance& instance, const InstanceResources& resources) const;
+  RefinedInstance refined(const InstanceResources& resources) const;
+  void addOverlays(const OverlaySet& wanted);
 };
 
 /// Finds where the instance's shape is and how the camera sees it.
@@ -196,6 +200,29 @@ raster::Draw FrameDrawer::State::describe(const Instance& instance,
   return draw;
 }
 
+RefinedInstance FrameDrawer::State::refined(const InstanceResources& resources) const {
+  return {resources.shape,   &meshes[resources.mesh]->topology,
+          &resources.stream, resources.texcoords,
+          resources.colors,  resources.shapeToWorld};
+}
+
+void FrameDrawer::State::addOverlays(const OverlaySet& wanted) {
+  overlays.clear();
+  // α is what patches make of the view; the other methods have none of their own.
+  silhouette::Parameters classification = parameters;
+  classification.method = silhouette::Method::kPatches;
+  for (std::size_t overlay = 0; overlay < kOverlays; ++overlay) {
+    if (!wanted[overlay]) continue;
+    for (const InstanceResources& resources : instances) {
+      if (!resources.visible) continue;
+      const silhouette::RefineTask& task = tasks[resources.task];
+      const bool isEdges = overlay == static_cast<std::size_t>(Overlay::kEdges);
+      if (isEdges) task.refiner->silhouetteness(task.view, classification, alphas);
+      overlays.add(static_cast<Overlay>(overlay), {refined(resources), task.view, parameters.method, alphas});
+    }
+  }
+}
+
 namespace {
 
 /// Where the picture and the planes that are wanted go, sized for it.
@@ -234,13 +261,14 @@ FrameDrawer::~FrameDrawer() = default;
 void FrameDrawer::refine(const Pose& pose, const CameraView& camera, const FrameSettings& settings) {
   State& s = *state_;
   s.parameters = settings.refinement;
+  s.parameters.listContour = settings.overlays[static_cast<std::size_t>(Overlay::kContour)];
   s.instances.resize(pose.instances.size());
   s.tasks.clear();
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
     s.instances[i].visible = pose.instances[i].visible;
     if (pose.instances[i].visible) s.place(pose.instances[i], camera, s.instances[i]);
   }
-  silhouette::refineAll(s.tasks, settings.refinement, s.workers);
+  silhouette::refineAll(s.tasks, s.parameters, s.workers);
 
   s.draws.clear();
   std::uint32_t firstId = 0;
@@ -269,6 +297,7 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
   State& s = *state_;
   refine(pose, camera, settings);
   viewLights(s.scene, pose, camera, settings, s.lights);
+  s.addOverlays(settings.overlays);
   const double refineMs = millisecondsSince(start);
 
   image.width = camera.projection.width;
@@ -278,6 +307,7 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
   frame.draws = s.draws;
   frame.materials = s.scene.materials;
   frame.lights = s.lights;
+  frame.lines = s.overlays.lines();
   frame.encoding = settings.encoding;
   frame.background = settings.background;
   frame.samples = settings.samples;
@@ -303,10 +333,7 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
 RefinedInstance FrameDrawer::instance(std::size_t instance) const {
   require(instance < state_->instances.size() && state_->instances[instance].visible,
           "no such instance in the last frame");
-  const InstanceResources& resources = state_->instances[instance];
-  return {resources.shape,   &state_->meshes[resources.mesh]->topology,
-          &resources.stream, resources.texcoords,
-          resources.colors,  resources.shapeToWorld};
+  return state_->refined(state_->instances[instance]);
 }
 
 void FrameDrawer::silhouetteness(std::size_t instance, std::vector<float>& alphas) {

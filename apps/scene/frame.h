@@ -8,7 +8,9 @@
 
 #include "apps/scene/camera.h"
 #include "apps/scene/image.h"
+#include "apps/scene/overlays.h"
 #include "apps/scene/pose.h"
+#include "apps/scene/refined_instance.h"
 #include "apps/scene/scene.h"
 #include "silhouette/refine.h"
 
@@ -23,6 +25,7 @@ struct FrameSettings {
   LightChoice light = LightChoice::kFile;      ///< kFile falls back to kPeer where the file has none
   glm::dvec3 lightDirection{0.36, 0.48, 0.8};  ///< kDirection: towards the light, world space
   raster::Encoding encoding = raster::Encoding::kSrgb;
+  OverlaySet overlays{};  ///< lines over the picture
 };
 
 /// Counts and times of one frame.
@@ -39,16 +42,6 @@ struct Planes {
   std::vector<glm::vec3> normals;  ///< unit, view space; 0 where nothing was drawn
   std::vector<std::uint32_t>
       ids;  ///< triangle of the coarse scene, instances one after the other, or raster::kNoId
-};
-
-/// One instance as a frame has it: a coarse shape, and the stream that replaces some of its triangles.
-struct RefinedInstance {
-  silhouette::Mesh shape;
-  const silhouette::Topology* topology = nullptr;
-  const silhouette::RefinedStream* stream = nullptr;
-  std::span<const glm::vec2> texcoords;  ///< of the stream's vertices, as far as the mesh has them
-  std::span<const glm::vec4> colors;
-  glm::dmat4 shapeToWorld{1.0};
 };
 
 /// Draws frames of one scene; keeps what does not change between frames.

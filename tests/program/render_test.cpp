@@ -65,6 +65,31 @@ TEST_F(Render, SameBytesForAnyNumberOfThreadsAndAnyDivisionOfTheWork) {
   for (const std::string& name : names("one")) EXPECT_EQ(contents("shards/" + name), contents("one/" + name));
 }
 
+TEST_F(Render, OverlaysAreDrawnInOneOrderAndNamedInThePicture) {
+  const Words plain = {"render", "builtin:pawn", "--size", "90x60", "--hash"};
+  const std::string without = limn(plain).out;
+  std::set<std::string> pictures = {without};
+  for (const char* overlay : {"wire", "edges", "contour", "features"}) {
+    for (const char* method : {"patches", "curves"}) {
+      const Words job = plain + Words{"--overlay", overlay, "--method", method};
+      const Result one = limn(job + Words{"--threads", "1"});
+      ASSERT_EQ(one.status, 0) << one.err;
+      EXPECT_EQ(limn(job + Words{"--threads", "3"}).out, one.out) << overlay;
+      pictures.insert(one.out);
+    }
+  }
+  EXPECT_EQ(pictures.size(), 9U);
+  const Result all = limn(plain + Words{"--overlay", "contour,wire", "-o", "a.png"});
+  EXPECT_EQ(limn(plain + Words{"--overlay", "wire,contour"}).out, all.out);
+  limn::scene::TextChunks texts;
+  limn::scene::readPng(path("a.png"), &texts);
+  EXPECT_NE(texts.at(1).second.find(" --overlay wire,contour"), std::string::npos) << texts[1].second;
+  const Result misspelt = limn(plain + Words{"--overlay", "wire,edge"});
+  EXPECT_EQ(misspelt.status, 2);
+  EXPECT_NE(misspelt.err.find("edges"), std::string::npos) << misspelt.err;
+  EXPECT_EQ(limn(plain + Words{"--overlay", "wire,wire"}).status, 2);
+}
+
 TEST_F(Render, DrawsTheFramesOfTheListInItsOrder) {
   const Result all = limn(turntable(8) + Words{"--hash"});
   ASSERT_EQ(all.status, 0) << all.err;
