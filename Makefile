@@ -78,14 +78,11 @@ check-all: check
 	@tests/tidy.sh build/sanitize all
 	@tests/matrix.sh
 
-# Each part writes its results to bench/results; all together take less than ten minutes.
+# All figures, in less than ten minutes, into bench/results; the page with all of them is bench/results/report.html.
 bench: bench-packages
 	@cmake --preset release -D LIMN_BUILD_PEER=ON --log-level=WARNING >/dev/null
-	@$(call compile,release,bench/all)
-	@mkdir -p bench/results
-	@bench/race.py --json bench/results/race.json | tee bench/results/race.md
-	@bench/linear.py --picture bench/results/linear.svg | tee bench/results/linear.md
-	@bench/run.sh build/release bench/results
+	@$(call compile,release,apps/all bench/all)
+	@bench/run.py
 
 # What a run finds is mended, and the input kept in tests/fuzz/corpus, where every later run starts.
 FUZZ_SECONDS ?= 60

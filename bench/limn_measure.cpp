@@ -31,7 +31,6 @@ int run(int argc, char** argv) {
       app.add_subcommand("stability", "kernels against exact twins, and the extremes");
   stability->add_option("--seed", options.seed, "of the inputs")->check(CLI::NonNegativeNumber);
   stability->add_flag("--quick", options.quick, "fewer cases");
-  addCsv(*stability, options);
   CLI::App* const trade =
       app.add_subcommand("trade", "accuracy against cost; what no other choice beats is marked");
   limn::measure::addOptions(*trade, options);

@@ -37,7 +37,7 @@ int runCoherence(const Options& options) {
       }
     }
   });
-  print(rows, options);
+  print(rows);
   return 0;
 }
 

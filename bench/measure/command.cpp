@@ -6,7 +6,6 @@
 #include <map>
 #include <stdexcept>
 
-#include "apps/scene/image.h"
 #include "apps/scene/load.h"
 #include "bench/measure/views.h"
 
@@ -33,10 +32,6 @@ CLI::CheckedTransformer oneOf(const std::map<std::string, Value>& choices) {
 
 }  // namespace
 
-void addCsv(CLI::App& command, Options& options) {
-  command.add_option("--csv", options.csvFile, "the rows as CSV besides");
-}
-
 void addOptions(CLI::App& command, Options& options) {
   silhouette::Parameters& p = options.parameters;
   command.add_option("--model", options.models,
@@ -56,7 +51,6 @@ void addOptions(CLI::App& command, Options& options) {
   command.add_option("--size", options.size, "of the square window in pixels")->check(CLI::Range(16, 2048));
   command.add_option("--threads", options.threads, "in all (default: what the machine has)")
       ->check(CLI::Range(1, 1024));
-  addCsv(command, options);
   command.add_flag("--quick", options.quick, "fewer views and models: within a minute");
   command.add_option("--segments", p.segments, "fixed count per edge instead of the tolerance")
       ->check(CLI::Range(0, silhouette::kMaxSegments));
@@ -148,31 +142,7 @@ double rounded(double value) {
   return std::round(value * 1e5) / 1e5;
 }
 
-namespace {
-
-std::string csvOf(const std::vector<Json>& rows) {
-  std::string text;
-  if (rows.empty()) return text;
-  for (const auto& [key, value] : rows.front().items()) text += (text.empty() ? "" : ",") + key;
-  text += '\n';
-  for (const Json& row : rows) {
-    const char* separator = "";
-    for (const auto& [key, value] : rows.front().items()) {
-      text += separator + (row.contains(key) ? row[key].dump() : std::string());
-      separator = ",";
-    }
-    text += '\n';
-  }
-  return text;
-}
-
-}  // namespace
-
-void print(const std::vector<Json>& rows, const Options& options) {
-  if (!options.csvFile.empty()) {
-    const std::string csv = csvOf(rows);
-    scene::writeFileWhole(options.csvFile, csv.data(), csv.size());
-  }
+void print(const std::vector<Json>& rows) {
   std::fputs("[", stdout);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     std::printf("%s\n  %s", i == 0 ? "" : ",", rows[i].dump().c_str());

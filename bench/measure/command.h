@@ -30,14 +30,12 @@ struct Options {
   bool perView = false;
   std::string dumpFolder;
   std::string plotFolder;  ///< trade: tables for gnuplot
-  std::string csvFile;
   double arc = 6.0;                     ///< coherence: degrees of camera path
   std::vector<double> steps{0.4, 0.1};  ///< coherence: degrees per frame
   silhouette::Parameters parameters;    ///< but for method and tolerance
 };
 
 void addOptions(CLI::App& command, Options& options);
-void addCsv(CLI::App& command, Options& options);
 
 /// METHOD, patches:TANGENTS, curves, METHOD:SEGMENTS; each with each tolerance (once where the segments are
 /// fixed, and once for flat). Throws std::invalid_argument.
@@ -52,8 +50,8 @@ int threadsOf(const Options& options);
 /// Rounded for reading: five decimals.
 double rounded(double value);
 
-/// The rows as a JSON array, one per line, and as CSV where the options want it: a column for each key of the first row.
-void print(const std::vector<Json>& rows, const Options& options);
+/// The rows on standard output as a JSON array, one per line.
+void print(const std::vector<Json>& rows);
 
 int runOutline(const Options& options);
 int runCoherence(const Options& options);

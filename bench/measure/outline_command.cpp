@@ -170,7 +170,7 @@ int runOutline(const Options& options) {
     if (analytic[v].size() > 1) tellPooled("pooled, analytic", analytic[v]);
     if (modelled[v].size() > 1) tellPooled("pooled, modelled", modelled[v]);
   }
-  print(rows, options);
+  print(rows);
   return 0;
 }
 

@@ -42,7 +42,7 @@ int runStability(const Options& options) {
                     {"domain", check.meaning},
                     {"outside", ""}});
   }
-  print(rows, options);
+  print(rows);
   return 0;
 }
 

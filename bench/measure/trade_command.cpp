@@ -109,7 +109,7 @@ int runTrade(const Options& options) {
     if (options.plotFolder.empty() || pooled.empty()) continue;
     writePlotTable(options.plotFolder + "/trade-" + std::string(name).substr(7) + ".dat", pooled);
   }
-  print(rows, options);
+  print(rows);
   return 0;
 }
 
