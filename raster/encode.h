@@ -1,6 +1,7 @@
 // From linear light to the bytes of the picture.
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -23,11 +24,15 @@ inline float encodeSrgb(float linear) {
   return x < kSrgbLinearEnd ? x * kSrgbLinearSlope : p;
 }
 
+/// What rounds a small float to an integer, ties to even: in the sum the last bit counts 1.
+inline constexpr float kRoundToInteger = 8388608.0F;
+
 /// Nearest byte of a value in [0, 1]; what lies outside is clamped, NaN becomes 0.
 inline std::uint8_t toByte(float value) {
-  const float scaled = value * 255.0F + 0.5F;
+  const float scaled = value * 255.0F;
   if (!(scaled > 0.0F)) return 0;
-  return scaled < 255.0F ? static_cast<std::uint8_t>(scaled) : 255;
+  const float sum = (scaled < 255.0F ? scaled : 255.0F) + kRoundToInteger;
+  return static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(sum));
 }
 
 inline std::uint8_t encode(float linear, Encoding encoding) {

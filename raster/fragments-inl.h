@@ -129,44 +129,56 @@ class Fragments {
       hn::Store(hn::Add(start, hn::Mul(hn::Load(f4, r.slopeX), dx)), f4, planes[i]);
     }
     for (std::size_t i = count_; i < kLanes; ++i) planes[i][3] = 1.0F;
-    Inputs in;
-    hn::LoadInterleaved4(f, planes[0], in.points.nx, in.points.ny, in.points.nz, in.points.depth);
-    in.points.px = hn::Load(d, px_), in.points.py = hn::Load(d, py_);
-    setAttributes(in);
-    const Color color = shadePoints(in, *material_, lighting_);
+    VF nx, ny, nz, depth;
+    hn::LoadInterleaved4(f, planes[0], nx, ny, nz, depth);
+    hn::Store(nx, f, points_.normal[0]), hn::Store(ny, f, points_.normal[1]),
+        hn::Store(nz, f, points_.normal[2]);
+    hn::Store(depth, f, points_.depth);
+    hn::Store(lighting_.rayX(hn::Load(d, px_)), f, points_.rayX);
+    hn::Store(lighting_.rayY(hn::Load(d, py_)), f, points_.rayY);
+    setBase();
+    points_.count = kLanes;
+    shadePoints(points_, *material_, lighting_);
     const VF weight = hn::Load(f, weight_);
     alignas(64) float out[3][kLanes];
-    hn::Store(hn::Mul(color.r, weight), f, out[0]);
-    hn::Store(hn::Mul(color.g, weight), f, out[1]);
-    hn::Store(hn::Mul(color.b, weight), f, out[2]);
+    for (int k = 0; k < 3; ++k) hn::Store(hn::Mul(hn::Load(f, points_.color[k]), weight), f, out[k]);
     for (std::size_t i = 0; i < count_; ++i)
       for (int k = 0; k < 3; ++k) sum_[k][pixel_[i]] += out[k][i];
     tile_.statistics.pixelsShaded += count_;
     count_ = 0;
   }
 
-  // Vertex colours and texture footprints, where the material or a mesh has them.
-  void setAttributes(Inputs& in) {
+  // Base colours, with vertex colours and texels where the material or a mesh has them.
+  void setBase() {
     const F f;
-    const VF one = hn::Set(f, 1.0F);
-    in.color = {one, one, one};
-    if (tile_.plainMaterial != nullptr) return;
+    const VF one = hn::Set(f, 1.0F), zero = hn::Zero(f);
     bool needed = material_->baseColorTexture != nullptr;
-    for (std::size_t i = 0; i < count_; ++i) needed |= tile_.surfaceOf(tile_.records[id_[i]]).hasColors;
-    if (!needed) return;
+    if (tile_.plainMaterial == nullptr)
+      for (std::size_t i = 0; i < count_; ++i) needed |= tile_.surfaceOf(tile_.records[id_[i]]).hasColors;
+    Color vertex{one, one, one};
+    FootprintVector footprint{zero, zero, zero, zero, zero, zero};
+    if (needed) interpolate(vertex, footprint);
+    const Color base = baseOf(*material_, vertex, footprint);
+    hn::Store(base.r, f, points_.base[0]);
+    hn::Store(base.g, f, points_.base[1]);
+    hn::Store(base.b, f, points_.base[2]);
+  }
+
+  void interpolate(Color& vertex, FootprintVector& footprint) const {
+    const F f;
     alignas(64) float v[9][kLanes] = {};
     for (std::size_t i = 0; i < count_; ++i) {
       Record& record = tile_.records[id_[i]];
       const PointAttributes a = attributesAt(tile_, record, {px_[i], py_[i]});
       const bool colored = tile_.surfaceOf(record).hasColors;
       for (int k = 0; k < 3; ++k) v[k][i] = colored ? a.color[k] : 1.0F;
-      const float footprint[6] = {a.footprint.u,  a.footprint.v,  a.footprint.ux,
+      const float texcoords[6] = {a.footprint.u,  a.footprint.v,  a.footprint.ux,
                                   a.footprint.vx, a.footprint.uy, a.footprint.vy};
-      for (int k = 0; k < 6; ++k) v[3 + k][i] = footprint[k];
+      for (int k = 0; k < 6; ++k) v[3 + k][i] = texcoords[k];
     }
-    in.color = {hn::Load(f, v[0]), hn::Load(f, v[1]), hn::Load(f, v[2])};
-    in.footprint = {hn::Load(f, v[3]), hn::Load(f, v[4]), hn::Load(f, v[5]),
-                    hn::Load(f, v[6]), hn::Load(f, v[7]), hn::Load(f, v[8])};
+    vertex = {hn::Load(f, v[0]), hn::Load(f, v[1]), hn::Load(f, v[2])};
+    footprint = {hn::Load(f, v[3]), hn::Load(f, v[4]), hn::Load(f, v[5]),
+                 hn::Load(f, v[6]), hn::Load(f, v[7]), hn::Load(f, v[8])};
   }
 
   // Shader::writePixel and writePremultiplied.
@@ -215,6 +227,8 @@ class Fragments {
   alignas(64) float weight_[kLanes] = {};
   std::uint32_t id_[kLanes] = {};
   std::size_t pixel_[kLanes] = {};
+
+  PointBatch points_;
 
   // Pixels and the sums of their fragments so far.
   std::size_t pixels_ = 0;

@@ -15,22 +15,28 @@ namespace HWY_NAMESPACE {
 
 #if HWY_TARGET != HWY_SCALAR
 
-/// Points to be shaded: where in the window, with which normals and depth.
-struct Points {
-  VI px, py;
-  VF nx, ny, nz, depth;
+/// Points to be shaded, up to `count`: rayAt() of their places in the window, normals, depths where lights need them,
+/// base colours; their colours; and what the steps of lighting hand on.
+struct PointBatch {
+  static constexpr std::size_t kSize = 256;
+  alignas(64) float rayX[kSize], rayY[kSize], normal[3][kSize], depth[kSize], base[3][kSize];
+  alignas(64) float color[3][kSize];
+  alignas(64) float length[kSize], diffuse[kSize], shine[kSize];
+  std::size_t count = 0;
 };
 
 struct Color {
   VF r, g, b;
 };
 
-/// power() of lighting.h.
+/// power() of lighting.h, n >= 0.
 HWY_INLINE VF powerOf(VF x, int n) {
-  VF result = hn::Set(F(), 1.0F);
-  for (; n != 0; n >>= 1) {
-    if ((n & 1) != 0) result = hn::Mul(result, x);
+  if (n == 0) return hn::Set(F(), 1.0F);
+  for (; (n & 1) == 0; n >>= 1) x = hn::Mul(x, x);
+  VF result = x;
+  while ((n >>= 1) != 0) {
     x = hn::Mul(x, x);
+    if ((n & 1) != 0) result = hn::Mul(result, x);
   }
   return result;
 }
@@ -41,95 +47,133 @@ class Lighting {
     for (const Light& light : lights) needsDepth_ |= light.kind != Light::Kind::kDirectional;
   }
 
+  /// rayAt() of lighting.h, for sub-pixels of the window.
+  HWY_INLINE VF rayX(VI px) const {
+    const VI center = hn::Set(I(), map_.width * (kSubpixels / 2));
+    return hn::Mul(hn::ConvertTo(F(), hn::Sub(px, center)), hn::Set(F(), map_.rayX));
+  }
+  HWY_INLINE VF rayY(VI py) const {
+    const VI center = hn::Set(I(), map_.height * (kSubpixels / 2));
+    return hn::Mul(hn::ConvertTo(F(), hn::Sub(center, py)), hn::Set(F(), map_.rayY));
+  }
+
   /// Some light shines from a place: points need their depths.
   bool needsDepth() const { return needsDepth_; }
 
   /// litColor() with the material's own emission.
-  HWY_INLINE Color operator()(const Points& p, const Color& base, const Material& m) const {
+  void operator()(PointBatch& p, const Material& m) const {
     const F f;
-    const VF one = hn::Set(f, 1.0F), zero = hn::Zero(f);
-    const Eye eye = eyeOf(p);
-    const VF nn = hn::Max(dot3(p.nx, p.nx, p.ny, p.ny, p.nz, p.nz), hn::Set(f, 1e-37F));
-    const VF inverse = hn::Div(one, hn::Sqrt(nn));
+    for (std::size_t i = 0; i < p.count; i += kLanes) hn::Store(eyeLength(p, i), f, p.length + i);
     // Sums begin with what need not be added.
-    const bool dark = m.emissive.x == 0.0F && m.emissive.y == 0.0F && m.emissive.z == 0.0F;
-    Color color{hn::Set(f, m.emissive.x), hn::Set(f, m.emissive.y), hn::Set(f, m.emissive.z)};
-    bool first = dark;
+    bool first = m.emissive.x == 0.0F && m.emissive.y == 0.0F && m.emissive.z == 0.0F;
+    if (!first || lights_.empty())
+      for (int k = 0; k < 3; ++k)
+        for (std::size_t i = 0; i < p.count; i += kLanes)
+          hn::Store(hn::Set(f, m.emissive[k]), f, p.color[k] + i);
     for (const Light& light : lights_) {
-      const Incoming in = incoming(light, eye);
-      const VF hx = hn::Add(hn::Mul(in.x, eye.length), eye.x), hy = hn::Add(hn::Mul(in.y, eye.length), eye.y);
-      const VF hz = hn::Add(hn::Mul(in.z, eye.length), eye.z);
-      const VF nl = hn::Max(hn::Mul(dot3(p.nx, in.x, p.ny, in.y, p.nz, in.z), inverse), zero);
-      const VF nh = hn::Max(dot3(p.nx, hx, p.ny, hy, p.nz, hz), zero);
-      const VF hh = hn::Max(dot3(hx, hx, hy, hy, hz, hz), hn::Set(f, 1e-12F));
-      const VF square = hn::Div(hn::Mul(nh, nh), hn::Mul(nn, hh));
-      VF shine = powerOf(square, m.shininess >> 1);
-      if ((m.shininess & 1) != 0) shine = hn::Mul(shine, hn::Sqrt(square));
-      VF diffuse = hn::Mul(hn::Set(f, light.diffuse), nl);
-      if (light.kind != Light::Kind::kDirectional) {
-        diffuse = hn::Mul(diffuse, in.share);
-        shine = hn::Mul(shine, in.share);
-      }
-      diffuse = hn::Add(hn::Set(f, light.ambient), diffuse);
+      if (light.kind == Light::Kind::kDirectional)
+        setShares<true>(light, m, p);
+      else
+        setShares<false>(light, m, p);
       const bool white = light.color.x == 1.0F && light.color.y == 1.0F && light.color.z == 1.0F;
-      const auto add = [&](VF& to, float lightColor, VF baseColor, float specular) {
-        VF sum = hn::Add(hn::Mul(baseColor, diffuse), hn::Mul(hn::Set(f, specular), shine));
-        if (!white) sum = hn::Mul(hn::Set(f, lightColor), sum);
-        to = first ? sum : hn::Add(to, sum);
-      };
-      add(color.r, light.color.x, base.r, m.specular.x);
-      add(color.g, light.color.y, base.g, m.specular.y);
-      add(color.b, light.color.z, base.b, m.specular.z);
+      if (white && first)
+        addColors<true, true>(light, m, p);
+      else if (first)
+        addColors<false, true>(light, m, p);
+      else
+        addColors<false, false>(light, m, p);
       first = false;
     }
-    return color;
   }
 
  private:
-  // A vector to the eye and its length, and where the point is.
-  struct Eye {
-    VF x, y, z, length;
-    VF px, py, pz;
+  HWY_INLINE VF eyeLength(const PointBatch& p, std::size_t i) const {
+    const F f;
+    const VF one = hn::Set(f, 1.0F), x = hn::Load(f, p.rayX + i), y = hn::Load(f, p.rayY + i);
+    return map_.perspective ? hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), one)) : one;
+  }
+
+  // How much of a light the points' bases and highlights send on.
+  template <bool kDirectional>
+  HWY_INLINE void setShares(const Light& light, const Material& m, PointBatch& p) const {
+    const F f;
+    const VF one = hn::Set(f, 1.0F), zero = hn::Zero(f);
+    const VF ambient = hn::Set(f, light.ambient), diffuse = hn::Set(f, light.diffuse);
+    const bool perspective = map_.perspective, odd = (m.shininess & 1) != 0;
+    const int half = m.shininess >> 1;
+    Incoming in{hn::Set(f, light.toLight.x), hn::Set(f, light.toLight.y), hn::Set(f, light.toLight.z), one};
+    for (std::size_t i = 0; i < p.count; i += kLanes) {
+      const VF nx = hn::Load(f, p.normal[0] + i), ny = hn::Load(f, p.normal[1] + i),
+               nz = hn::Load(f, p.normal[2] + i), length = hn::Load(f, p.length + i);
+      // The vector to the eye is (-x, -y, 1).
+      const VF x = perspective ? hn::Load(f, p.rayX + i) : zero,
+               y = perspective ? hn::Load(f, p.rayY + i) : zero;
+      if constexpr (!kDirectional) in = incoming(light, placeOf(p, i));
+      const VF nn = hn::Max(dot3(nx, nx, ny, ny, nz, nz), hn::Set(f, 1e-37F));
+      const VF nv = hn::Sub(nz, hn::Add(hn::Mul(nx, x), hn::Mul(ny, y)));
+      const VF ln = dot3(nx, in.x, ny, in.y, nz, in.z);
+      const VF lv = hn::Sub(in.z, hn::Add(hn::Mul(in.x, x), hn::Mul(in.y, y)));
+      const VF hh = hn::Max(hn::Mul(hn::Add(length, length), hn::Add(length, lv)), hn::Set(f, 1e-12F));
+      const VF nh = hn::Max(hn::Add(hn::Mul(ln, length), nv), zero);
+      const VF inverse = hn::Div(one, hn::Mul(nn, hh));
+      const VF nl = hn::Max(hn::Mul(ln, hn::Sqrt(hn::Mul(hh, inverse))), zero);
+      const VF square = hn::Min(hn::Mul(hn::Mul(nh, nh), inverse), one);
+      VF shine = powerOf(square, half);
+      if (odd) shine = hn::Mul(shine, hn::Sqrt(square));
+      VF lit = hn::Mul(diffuse, nl);
+      if constexpr (!kDirectional) {
+        lit = hn::Mul(lit, in.share);
+        shine = hn::Mul(shine, in.share);
+      }
+      hn::Store(hn::Add(ambient, lit), f, p.diffuse + i);
+      hn::Store(shine, f, p.shine + i);
+    }
+  }
+
+  // The light's part of the colours.
+  template <bool kWhite, bool kFirst>
+  HWY_INLINE static void addColors(const Light& light, const Material& m, PointBatch& p) {
+    const F f;
+    for (int k = 0; k < 3; ++k) {
+      const VF color = hn::Set(f, light.color[k]), specular = hn::Set(f, m.specular[k]);
+      for (std::size_t i = 0; i < p.count; i += kLanes) {
+        VF sum = hn::Add(hn::Mul(hn::Load(f, p.base[k] + i), hn::Load(f, p.diffuse + i)),
+                         hn::Mul(specular, hn::Load(f, p.shine + i)));
+        if constexpr (!kWhite) sum = hn::Mul(color, sum);
+        if constexpr (!kFirst) sum = hn::Add(hn::Load(f, p.color[k] + i), sum);
+        hn::Store(sum, f, p.color[k] + i);
+      }
+    }
+  }
+
+  struct Place {
+    VF x, y, z;
   };
 
-  HWY_INLINE Eye eyeOf(const Points& p) const {
-    const I d;
+  // Where points are in view space.
+  HWY_INLINE Place placeOf(const PointBatch& p, std::size_t i) const {
     const F f;
-    Eye eye;
-    const VF one = hn::Set(f, 1.0F);
-    const VI cx = hn::Set(d, map_.width * (kSubpixels / 2)), cy = hn::Set(d, map_.height * (kSubpixels / 2));
-    const VF x = hn::Mul(hn::ConvertTo(f, hn::Sub(p.px, cx)), hn::Set(f, map_.rayX));
-    const VF y = hn::Mul(hn::ConvertTo(f, hn::Sub(cy, p.py)), hn::Set(f, map_.rayY));
-    eye.x = map_.perspective ? hn::Neg(x) : hn::Zero(f);
-    eye.y = map_.perspective ? hn::Neg(y) : hn::Zero(f);
-    eye.z = one;
-    eye.length = map_.perspective ? hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), one)) : one;
-    eye.px = x, eye.py = y, eye.pz = one;
-    if (!needsDepth_) return eye;
+    const VF x = hn::Load(f, p.rayX + i), y = hn::Load(f, p.rayY + i), value = hn::Load(f, p.depth + i);
     if (map_.perspective) {
-      const VF depth = hn::Div(one, p.depth);
-      eye.px = hn::Mul(x, depth), eye.py = hn::Mul(y, depth), eye.pz = hn::Neg(depth);
-    } else {
-      const VF depth =
-          hn::Mul(hn::Sub(hn::Set(f, map_.depthOffset), p.depth), hn::Set(f, map_.farPlane - map_.nearPlane));
-      eye.pz = hn::Neg(depth);
+      const VF depth = hn::Div(hn::Set(f, 1.0F), value);
+      return {hn::Mul(x, depth), hn::Mul(y, depth), hn::Neg(depth)};
     }
-    return eye;
+    const VF depth =
+        hn::Mul(hn::Sub(hn::Set(f, map_.depthOffset), value), hn::Set(f, map_.farPlane - map_.nearPlane));
+    return {x, y, hn::Neg(depth)};
   }
 
   struct Incoming {
     VF x, y, z, share;
   };
 
-  /// incidence() of lighting.h.
-  HWY_INLINE static Incoming incoming(const Light& light, const Eye& eye) {
+  /// incidence() of lighting.h, for lights that shine from a place.
+  HWY_INLINE static Incoming incoming(const Light& light, const Place& place) {
     const F f;
     const VF one = hn::Set(f, 1.0F), zero = hn::Zero(f);
-    if (light.kind == Light::Kind::kDirectional)
-      return {hn::Set(f, light.toLight.x), hn::Set(f, light.toLight.y), hn::Set(f, light.toLight.z), one};
-    const VF dx = hn::Sub(hn::Set(f, light.position.x), eye.px),
-             dy = hn::Sub(hn::Set(f, light.position.y), eye.py);
-    const VF dz = hn::Sub(hn::Set(f, light.position.z), eye.pz);
+    const VF dx = hn::Sub(hn::Set(f, light.position.x), place.x),
+             dy = hn::Sub(hn::Set(f, light.position.y), place.y);
+    const VF dz = hn::Sub(hn::Set(f, light.position.z), place.z);
     const VF square = hn::Max(dot3(dx, dx, dy, dy, dz, dz), hn::Set(f, 1e-30F));
     const VF inverse = hn::Div(one, hn::Sqrt(square));
     Incoming in{hn::Mul(dx, inverse), hn::Mul(dy, inverse), hn::Mul(dz, inverse), hn::Mul(inverse, inverse)};
@@ -163,19 +207,21 @@ HWY_INLINE VF srgbOf(VF linear) {
   return hn::IfThenElse(hn::Lt(x, hn::Set(f, kSrgbLinearEnd)), hn::Mul(x, hn::Set(f, kSrgbLinearSlope)), p);
 }
 
-/// toByte() of encode.h.
+/// toByte() of encode.h in the lowest byte, the bits of kRoundToInteger above it.
 HWY_INLINE VI byteOf(VF value) {
   const F f;
-  const VF scaled = hn::Add(hn::Mul(value, hn::Set(f, 255.0F)), hn::Set(f, 0.5F));
-  return hn::ConvertTo(I(), hn::Min(hn::Max(scaled, hn::Zero(f)), hn::Set(f, 255.0F)));
+  const VF scaled = hn::Min(hn::Max(hn::Mul(value, hn::Set(f, 255.0F)), hn::Zero(f)), hn::Set(f, 255.0F));
+  return hn::BitCast(I(), hn::Add(scaled, hn::Set(f, kRoundToInteger)));
 }
 
-/// A color as the four bytes of its pixels.
+/// A color as the four bytes of its pixels, `alpha` being byteOf() it.
 HWY_INLINE VI packedOf(const Color& c, VI alpha, Encoding encoding) {
   const bool srgb = encoding == Encoding::kSrgb;
   const VI r = byteOf(srgb ? srgbOf(c.r) : c.r), g = byteOf(srgb ? srgbOf(c.g) : c.g),
            b = byteOf(srgb ? srgbOf(c.b) : c.b);
-  return hn::Or(hn::Or(r, hn::ShiftLeft<8>(g)), hn::Or(hn::ShiftLeft<16>(b), hn::ShiftLeft<24>(alpha)));
+  // Of green, blue and alpha the shifts leave nothing but the byte.
+  const VI low = hn::Or(hn::And(r, hn::Set(I(), 0xff)), hn::ShiftLeft<8>(g));
+  return hn::Or(low, hn::Or(hn::ShiftLeft<16>(b), hn::ShiftLeft<24>(alpha)));
 }
 #endif
 

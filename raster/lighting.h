@@ -2,8 +2,9 @@
 //
 // Based on: J. Blinn, "Models of light reflection for computer synthesized pictures", 1977; light attenuation
 // of glTF's KHR_lights_punctual. Differs in: normals come as n·q of any length, since only their direction
-// counts; h is l·|v| + v for a vector v to the eye of any length, and (n·h)² / (|n|²|h|²) needs neither of them
-// normalised, so even exponents need no square root.
+// counts; h is l·|v| + v for a vector v to the eye of any length, so n·h = (n·l)|v| + n·v and, as l is a unit vector,
+// |h|² = 2|v|(|v| + l·v); (n·h)² / (|n|²|h|²) needs neither of them normalised, so even exponents need no square root,
+// and n's length comes from the same division.
 #pragma once
 
 #include <algorithm>
@@ -81,15 +82,15 @@ inline Incidence incidence(const Light& light, const glm::vec3& position) {
 inline glm::vec3 litColor(const SurfacePoint& p, const glm::vec3& base, const glm::vec3& emissive,
                           const Material& m, std::span<const Light> lights) {
   glm::vec3 color = emissive;
-  const float nn = std::max(dot(p.normal, p.normal), 1e-37F), inverse = 1.0F / std::sqrt(nn);
+  const float nn = std::max(dot(p.normal, p.normal), 1e-37F), nv = dot(p.normal, p.toEye);
   for (const Light& light : lights) {
     const Incidence in = incidence(light, p.position);
-    const float length = p.eyeLength;
-    const glm::vec3 h{in.toLight.x * length + p.toEye.x, in.toLight.y * length + p.toEye.y,
-                      in.toLight.z * length + p.toEye.z};
-    const float nl = std::max(dot(p.normal, in.toLight) * inverse, 0.0F);
-    const float nh = std::max(dot(p.normal, h), 0.0F);
-    const float square = (nh * nh) / (nn * std::max(dot(h, h), 1e-12F));
+    const float ln = dot(p.normal, in.toLight), lv = dot(in.toLight, p.toEye);
+    const float hh = std::max((p.eyeLength + p.eyeLength) * (p.eyeLength + lv), 1e-12F);
+    const float nh = std::max(ln * p.eyeLength + nv, 0.0F);
+    const float inverse = 1.0F / (nn * hh);
+    const float nl = std::max(ln * std::sqrt(hh * inverse), 0.0F);
+    const float square = std::min((nh * nh) * inverse, 1.0F);
     float highlight = power(square, m.shininess >> 1);
     if ((m.shininess & 1) != 0) highlight *= std::sqrt(square);
     const float diffuse = light.ambient + light.diffuse * nl * in.share;

@@ -1,4 +1,7 @@
-// What is interpolated at a vector of points, and the colour that follows from it. Definition: surface.cpp.
+// Points to be shaded, a few vectors of them at a time, and the colours that follow. Definition: surface.cpp, lighting.h.
+//
+// The light is computed step by step, each step over all points: the steps' chains of dependent roots and divisions are
+// then short enough for the processor to work on several vectors at once.
 #if defined(LIMN_RASTER_POINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef LIMN_RASTER_POINTS_INL_H_
 #undef LIMN_RASTER_POINTS_INL_H_
@@ -16,29 +19,37 @@ namespace limn::raster {
 namespace HWY_NAMESPACE {
 
 #if HWY_TARGET != HWY_SCALAR
-/// All that a material without normal map and emissive texture needs.
-struct Inputs {
-  Points points;
-  Color color;  ///< of the vertices
-  FootprintVector footprint;
-};
-
 /// Left to the definition.
 HWY_INLINE bool isComplex(const Material& m) {
   return m.normalTexture != nullptr || m.emissiveTexture != nullptr;
 }
 
-/// Linear colours of points that have one material.
-HWY_INLINE Color shadePoints(const Inputs& in, const Material& m, const Lighting& lighting) {
+/// Linear colours of points that have one material, `points.base` being what vertex colours and textures make of it.
+inline void shadePoints(PointBatch& points, const Material& m, const Lighting& lighting) {
   const F f;
-  const glm::vec4& c = m.baseColor;
-  Color base{hn::Mul(hn::Set(f, c.x), in.color.r), hn::Mul(hn::Set(f, c.y), in.color.g),
-             hn::Mul(hn::Set(f, c.z), in.color.b)};
-  if (m.baseColorTexture != nullptr) {
-    const Color texel = sampleVector(m.baseColorTexture->data(), in.footprint);
-    base = {hn::Mul(base.r, texel.r), hn::Mul(base.g, texel.g), hn::Mul(base.b, texel.b)};
+  if (!m.unlit) return lighting(points, m);
+  for (int k = 0; k < 3; ++k)
+    for (std::size_t i = 0; i < points.count; i += kLanes)
+      hn::Store(hn::Load(f, points.base[k] + i), f, points.color[k] + i);
+}
+
+/// The base colour of a material with vertex colours and, where it has a texture, texels.
+HWY_INLINE Color baseOf(const Material& m, const Color& vertex, const FootprintVector& footprint) {
+  const F f;
+  const Color base{hn::Mul(hn::Set(f, m.baseColor.x), vertex.r), hn::Mul(hn::Set(f, m.baseColor.y), vertex.g),
+                   hn::Mul(hn::Set(f, m.baseColor.z), vertex.b)};
+  if (m.baseColorTexture == nullptr) return base;
+  const Color texel = sampleVector(m.baseColorTexture->data(), footprint);
+  return {hn::Mul(base.r, texel.r), hn::Mul(base.g, texel.g), hn::Mul(base.b, texel.b)};
+}
+
+/// Fills a batch's base colours with a material's that has neither vertex colours nor a texture.
+inline void setPlainBase(const Material& m, PointBatch& points) {
+  const F f;
+  for (int k = 0; k < 3; ++k) {
+    const VF value = hn::Mul(hn::Set(f, m.baseColor[k]), hn::Set(f, 1.0F));
+    for (std::size_t i = 0; i < PointBatch::kSize; i += kLanes) hn::Store(value, f, points.base[k] + i);
   }
-  return m.unlit ? base : lighting(in.points, base, m);
 }
 #endif
 

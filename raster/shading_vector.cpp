@@ -33,12 +33,26 @@ class Shading {
         context_(*tile.context),
         lighting_(context_.map, context_.frame.lights),
         background_(packed(context_.frame.background)),
-        fragments_(tile, lighting_) {}
+        depth_(context_.samples.size() > 1 ? tile.centerDepth.data() : tile.depth.data()),
+        fragments_(tile, lighting_) {
+    for (int x = 0; x < tile.width; x += static_cast<int>(kLanes))
+      hn::Store(lighting_.rayX(centersFrom(x)), F(), rayX_ + x);
+  }
 
   void run() {
-    for (int y = 0; y < tile_.height; ++y)
-      for (int x = 0; x < tile_.width; x += static_cast<int>(kLanes)) block(x, y);
+    if (tile_.isEmpty()) return fill();
+    if (tile_.plainMaterial != nullptr) setMaterial(*tile_.plainMaterial, true);
+    const bool simple = samples_ == 1 && tile_.plainMaterial != nullptr && !tile_.overlaid;
+    for (int y = 0; y < tile_.height; ++y) {
+      rayY_ = hn::GetLane(lighting_.rayY(hn::Set(I(), (tile_.top + y) * kSubpixels + kOneSample[0].y)));
+      const int wholeBlocks = simple ? tile_.width - tile_.width % static_cast<int>(kLanes) : 0;
+      for (int x = 0; x < wholeBlocks; x += static_cast<int>(kLanes)) simpleBlock(x, y);
+      for (int x = wholeBlocks; x < tile_.width; x += static_cast<int>(kLanes)) block(x, y);
+    }
+    flush();
     fragments_.finish();
+    tile_.statistics.pixelsShaded += shaded_;
+    tile_.statistics.pixelsCovered += shaded_;
   }
 
  private:
@@ -49,9 +63,30 @@ class Shading {
                                      static_cast<unsigned>(toByte(c.w)) << 24U);
   }
 
+  void fill() const {
+    for (int y = 0; y < tile_.height; ++y)
+      for (int x = 0; x < tile_.width; x += static_cast<int>(kLanes)) store(hn::Set(I(), background_), x, y);
+  }
+
   HWY_INLINE VI idsAt(std::size_t sample, int x, int y) const {
     const std::size_t o = tile_.offset(static_cast<int>(sample), x, y);
     return hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(&tile_.ids[o]));
+  }
+
+  // Sub-pixel columns of the pixel centres from x on.
+  HWY_INLINE VI centersFrom(int x) const {
+    const VI left = hn::Set(I(), (tile_.left + x) * kSubpixels + kOneSample[0].x);
+    return hn::Add(left, hn::ShiftLeft<kSubpixelBits>(hn::Iota(I(), 0)));
+  }
+
+  // A vector of pixels that all lie within the tile and show the plain material or nothing.
+  HWY_INLINE void simpleBlock(int x, int y) {
+    const I d;
+    const MI seen = hn::Ne(idsAt(0, x, y), hn::Set(d, -1));
+    if (hn::AllFalse(d, seen))
+      hn::StoreU(hn::Set(d, background_), d, reinterpret_cast<std::int32_t*>(pixelAt(x, y)));
+    else
+      push(x, y, seen, true);
   }
 
   HWY_INLINE void block(int x, int y) {
@@ -59,26 +94,26 @@ class Shading {
     const VI ids = idsAt(0, x, y);
     const MI inside = hn::FirstN(d, static_cast<std::size_t>(tile_.width - x));
     MI whole = inside;  // pixels all of whose samples show the same
-    for (std::size_t s = 1; s < context_.samples.size(); ++s)
-      whole = hn::And(whole, hn::Eq(ids, idsAt(s, x, y)));
+    for (std::size_t s = 1; s < samples_; ++s) whole = hn::And(whole, hn::Eq(ids, idsAt(s, x, y)));
     if (tile_.overlaid) whole = hn::And(whole, notBlended(x, y));
     const MI seen = hn::And(whole, hn::Ne(ids, hn::Set(d, -1)));
-    MI done = whole;
-    VI color = hn::Set(d, background_);
+    if (!hn::AllTrue(d, seen)) store(hn::Set(d, background_), x, y);
+    MI left = hn::AndNot(whole, inside);
     if (!hn::AllFalse(d, seen)) {
-      MI complex = hn::FirstN(d, 0);
-      color = hn::IfThenElse(seen, colors(x, y, ids, seen, complex), color);
-      done = hn::AndNot(complex, done);
-      const std::size_t count = hn::CountTrue(d, hn::And(done, seen));
-      tile_.statistics.pixelsShaded += count;
-      tile_.statistics.pixelsCovered += count;
+      if (tile_.plainMaterial != nullptr)
+        push(x, y, seen);
+      else
+        left = hn::Or(left, pushByMaterial(x, y, ids, seen));
     }
-    store(color, x, y);
-    for (unsigned left = bitsOf(hn::AndNot(done, inside)); left != 0; left &= left - 1) {
+    if (samples_ > 1 || !hn::AllFalse(d, left)) leave(bitsOf(left), x, y);
+  }
+
+  // Pixels that a vector cannot handle.
+  void leave(unsigned left, int x, int y) {
+    for (; left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
       const bool blended = tile_.overlaid && tile_.isBlended[tile_.offset(0, x + lane, y)] != 0;
-      if (blended || tile_.context->samples.size() == 1 || !fragments_.add(x + lane, y))
-        shadePixelScalar(tile_, x + lane, y);
+      if (blended || samples_ == 1 || !fragments_.add(x + lane, y)) shadePixelScalar(tile_, x + lane, y);
     }
   }
 
@@ -90,10 +125,14 @@ class Shading {
     return hn::Ne(hn::Load(d, free), hn::Zero(d));
   }
 
-  void store(VI color, int x, int y) const {
+  std::uint8_t* pixelAt(int x, int y) const {
     const std::size_t row = static_cast<std::size_t>(tile_.top + y) * context_.target.rgbaStride;
-    std::uint8_t* to = context_.target.rgba + row + static_cast<std::size_t>(tile_.left + x) * 4;
+    return context_.target.rgba + row + static_cast<std::size_t>(tile_.left + x) * 4;
+  }
+
+  HWY_INLINE void store(VI color, int x, int y) const {
     const hn::Repartition<std::uint8_t, I> d8;
+    std::uint8_t* const to = pixelAt(x, y);
     if (x + static_cast<int>(kLanes) <= tile_.width) {
       hn::StoreU(hn::BitCast(d8, color), d8, to);
       return;
@@ -103,51 +142,116 @@ class Shading {
     std::copy(bytes, bytes + static_cast<std::ptrdiff_t>(4 * (tile_.width - x)), to);
   }
 
-  // Colours of the pixels in `seen`, encoded; those left to the scalar code are added to `complex`.
-  HWY_INLINE VI colors(int x, int y, VI ids, MI seen, MI& complex) {
+  void setMaterial(const Material& m, bool plain) {
+    if (material_ == &m && plain == plain_) return;
+    flush();
+    material_ = &m;
+    plain_ = plain;
+    if (plain) setPlainBase(m, points_);
+  }
+
+  // Adds the pixels in `lanes` to the points waiting to be shaded; over background, the others are written as such.
+  HWY_INLINE std::size_t push(int x, int y, MI lanes, bool overBackground = false) {
+    const F f;
+    if (points_.count == PointBatch::kSize) flush();
+    const std::size_t o = tile_.offset(0, x, y), n = points_.count;
+    hn::Store(hn::Load(f, rayX_ + x), f, points_.rayX + n);
+    hn::Store(hn::Set(f, rayY_), f, points_.rayY + n);
+    const VF nx = hn::LoadU(f, tile_.normal[0].data() + o), ny = hn::LoadU(f, tile_.normal[1].data() + o),
+             nz = hn::LoadU(f, tile_.normal[2].data() + o);
+    hn::Store(nx, f, points_.normal[0] + n);
+    hn::Store(ny, f, points_.normal[1] + n);
+    hn::Store(nz, f, points_.normal[2] + n);
+    if (lighting_.needsDepth()) hn::Store(hn::LoadU(f, depth_ + o), f, points_.depth + n);
+    const unsigned bits = bitsOf(lanes);
+    places_[n / kLanes] = {pixelAt(x, y), bits, overBackground};
+    shaded_ += static_cast<std::size_t>(std::popcount(bits));
+    points_.count = n + kLanes;
+    return n;
+  }
+
+  // Shades the points that wait, and writes them.
+  void flush() {
+    if (points_.count == 0) return;
+    shadePoints(points_, *material_, lighting_);
+    if (context_.frame.encoding == Encoding::kSrgb)
+      writePoints<Encoding::kSrgb>();
+    else
+      writePoints<Encoding::kNone>();
+    points_.count = 0;
+  }
+
+  template <Encoding kEncoding>
+  void writePoints() const {
+    const F f;
+    const VI opaque = hn::Set(I(), 255);
+    for (std::size_t i = 0; i < points_.count; i += kLanes) {
+      const Color color{hn::Load(f, points_.color[0] + i), hn::Load(f, points_.color[1] + i),
+                        hn::Load(f, points_.color[2] + i)};
+      write(packedOf(color, opaque, kEncoding), places_[i / kLanes]);
+    }
+  }
+
+  struct Place {
+    std::uint8_t* to;
+    unsigned lanes;
+    bool overBackground;
+  };
+
+  HWY_INLINE void write(VI color, const Place& at) const {
+    const I d;
+    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(at.lanes),
+                                  static_cast<std::uint8_t>(at.lanes >> 8U)};
+    const MI lanes = hn::LoadMaskBits(d, bits);
+    auto* const to = reinterpret_cast<std::int32_t*>(at.to);
+    if (at.overBackground) return hn::StoreU(hn::IfThenElse(lanes, color, hn::Set(d, background_)), d, to);
+    if constexpr (HWY_TARGET <= HWY_AVX2) return hn::BlendedStore(color, lanes, d, to);
+    alignas(64) std::int32_t pixels[kLanes];
+    hn::Store(color, d, pixels);
+    for (unsigned left = at.lanes; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+      std::copy_n(reinterpret_cast<const std::uint8_t*>(pixels + lane), 4, at.to + 4 * lane);
+    }
+  }
+
+  // The same for the triangles' own materials; returns the pixels that are left to the definition.
+  MI pushByMaterial(int x, int y, VI ids, MI seen) {
     const I d;
     const F f;
-    Inputs in;
-    const VI left = hn::Set(d, (tile_.left + x) * kSubpixels + kOneSample[0].x);
-    in.points.px = hn::Add(left, hn::ShiftLeft<kSubpixelBits>(hn::Iota(d, 0)));
+    const VF one = hn::Set(f, 1.0F), zero = hn::Zero(f);
+    const VI px = centersFrom(x);
     const std::int32_t py = (tile_.top + y) * kSubpixels + kOneSample[0].y;
-    in.points.py = hn::Set(d, py);
-    in.points.nx = in.points.ny = in.points.nz = hn::Zero(f);
-    in.points.depth = in.color.r = in.color.g = in.color.b = hn::Set(f, 1.0F);
-    in.footprint = {hn::Zero(f), hn::Zero(f), hn::Zero(f), hn::Zero(f), hn::Zero(f), hn::Zero(f)};
     const std::uint32_t* row = &tile_.ids[tile_.offset(0, x, y)];
-    if (tile_.plainMaterial != nullptr) {
-      forTriangles(row, ids, seen,
-                   [&](Record& record, MI same) { interpolate(in, record, py, hn::RebindMask(f, same)); });
-      return packedOf(shadePoints(in, *tile_.plainMaterial, lighting_), hn::Set(d, 255),
-                      context_.frame.encoding);
-    }
-    // Usually all triangles of the block have one material; else one material is shaded after the other.
-    VI result = hn::Zero(d);
+    MI complex = hn::FirstN(d, 0);
     for (MI todo = seen; !hn::AllFalse(d, todo);) {
       const Material* material = nullptr;
       MI mine = hn::FirstN(d, 0);
+      bool plain = true;
+      Color vertex{one, one, one};
+      FootprintVector footprint{zero, zero, zero, zero, zero, zero};
       forTriangles(row, ids, todo, [&](Record& record, MI same) {
         const Surface surface = tile_.surfaceOf(record);
         if (material == nullptr) material = surface.material;
         if (surface.material != material) return;
         mine = hn::Or(mine, same);
-        if (isComplex(*material)) return;
-        interpolate(in, record, py, hn::RebindMask(f, same));
-        if (material->baseColorTexture != nullptr || surface.hasColors)
-          interpolateAttributes(in, record, surface, py, hn::RebindMask(f, same));
-        else
-          in.color = {hn::Set(f, 1.0F), hn::Set(f, 1.0F), hn::Set(f, 1.0F)};
+        if (isComplex(*material) || (material->baseColorTexture == nullptr && !surface.hasColors)) return;
+        plain = false;
+        interpolateAttributes(vertex, footprint, record, surface, px, py, hn::RebindMask(f, same));
       });
       todo = hn::AndNot(mine, todo);
       if (isComplex(*material)) {
         complex = hn::Or(complex, mine);
         continue;
       }
-      const Color color = shadePoints(in, *material, lighting_);
-      result = hn::IfThenElse(mine, packedOf(color, hn::Set(d, 255), context_.frame.encoding), result);
+      setMaterial(*material, plain);
+      const std::size_t n = push(x, y, mine);
+      if (plain) continue;
+      const Color base = baseOf(*material, vertex, footprint);
+      hn::Store(base.r, f, points_.base[0] + n);
+      hn::Store(base.g, f, points_.base[1] + n);
+      hn::Store(base.b, f, points_.base[2] + n);
     }
-    return result;
+    return complex;
   }
 
   // Calls body(record, lanes) for every triangle that is seen in some lanes of a block.
@@ -162,30 +266,15 @@ class Shading {
     }
   }
 
-  // Values of one triangle's planes, where it is seen.
-  HWY_INLINE void interpolate(Inputs& b, const Record& record, std::int32_t py, MF where) {
-    const I d;
-    const F f;
-    const VF dx = hn::ConvertTo(f, hn::Sub(b.points.px, hn::Set(d, record.x0)));
-    const VF dy = hn::Set(f, static_cast<float>(py - record.y0));
-    const auto value = [&](int i, VF otherwise) {
-      const VF start = hn::Add(hn::Set(f, record.origin[i]), hn::Mul(hn::Set(f, record.slopeY[i]), dy));
-      return hn::IfThenElse(where, hn::Add(start, hn::Mul(hn::Set(f, record.slopeX[i]), dx)), otherwise);
-    };
-    b.points.nx = value(0, b.points.nx);
-    b.points.ny = value(1, b.points.ny);
-    b.points.nz = value(2, b.points.nz);
-    if (lighting_.needsDepth()) b.points.depth = value(3, b.points.depth);
-  }
-
-  // The same of texture coordinates and vertex colours, perspective-correct: Interpolator of surface.cpp.
-  HWY_INLINE void interpolateAttributes(Inputs& b, Record& record, const Surface& surface, std::int32_t py,
-                                        MF where) {
+  // A triangle's texture coordinates and vertex colours, perspective-correct, where it is seen: Interpolator of
+  // surface.cpp.
+  HWY_INLINE void interpolateAttributes(Color& color, FootprintVector& footprint, Record& record,
+                                        const Surface& surface, VI px, std::int32_t py, MF where) {
     const I d;
     const F f;
     const bool perspective = context_.map.perspective,
                textured = surface.material->baseColorTexture != nullptr;
-    const VF dx = hn::ConvertTo(f, hn::Sub(b.points.px, hn::Set(d, record.x0)));
+    const VF dx = hn::ConvertTo(f, hn::Sub(px, hn::Set(d, record.x0)));
     const float rise = static_cast<float>(py - record.y0);
     const auto plane = [&](float origin, float slopeX, float slopeY) {
       return hn::Add(hn::Set(f, origin + slopeY * rise), hn::Mul(hn::Set(f, slopeX), dx));
@@ -196,9 +285,9 @@ class Shading {
     const Attributes& a = attributesOf(tile_, record);
     const auto value = [&](int i) { return hn::Mul(plane(a.origin[i], a.slopeX[i], a.slopeY[i]), w); };
     const auto put = [&](VF& to, VF v) { to = hn::IfThenElse(where, v, to); };
-    put(b.color.r, surface.hasColors ? value(Attributes::kRed) : one);
-    put(b.color.g, surface.hasColors ? value(Attributes::kGreen) : one);
-    put(b.color.b, surface.hasColors ? value(Attributes::kBlue) : one);
+    put(color.r, surface.hasColors ? value(Attributes::kRed) : one);
+    put(color.g, surface.hasColors ? value(Attributes::kGreen) : one);
+    put(color.b, surface.hasColors ? value(Attributes::kBlue) : one);
     if (!textured) return;
     const float qx = perspective ? record.slopeX[3] : 0.0F, qy = perspective ? record.slopeY[3] : 0.0F;
     const VF u = value(Attributes::kU), v = value(Attributes::kV);
@@ -206,18 +295,28 @@ class Shading {
     const auto change = [&](float slope, VF at, float q) {
       return hn::Mul(hn::Sub(hn::Set(f, slope), hn::Mul(at, hn::Set(f, q))), scale);
     };
-    put(b.footprint.u, u), put(b.footprint.v, v);
-    put(b.footprint.ux, change(a.slopeX[Attributes::kU], u, qx));
-    put(b.footprint.vx, change(a.slopeX[Attributes::kV], v, qx));
-    put(b.footprint.uy, change(a.slopeY[Attributes::kU], u, qy));
-    put(b.footprint.vy, change(a.slopeY[Attributes::kV], v, qy));
+    put(footprint.u, u), put(footprint.v, v);
+    put(footprint.ux, change(a.slopeX[Attributes::kU], u, qx));
+    put(footprint.vx, change(a.slopeX[Attributes::kV], v, qx));
+    put(footprint.uy, change(a.slopeY[Attributes::kU], u, qy));
+    put(footprint.vy, change(a.slopeY[Attributes::kV], v, qy));
   }
 
   Tile& tile_;
   const FrameContext& context_;
   Lighting lighting_;
   std::int32_t background_;
+  const float* depth_;  // of pixel centres
   Fragments fragments_;
+  std::size_t samples_ = context_.samples.size(), shaded_ = 0;
+
+  // Points waiting to be shaded, all of one material.
+  const Material* material_ = nullptr;
+  alignas(64) float rayX_[128 + 16];  // of the tile's columns
+  float rayY_ = 0.0F;                 // of the row
+  bool plain_ = false;                // the base colour is the material's
+  PointBatch points_;
+  Place places_[PointBatch::kSize / kLanes];
 };
 
 void shadeTileVector(Tile& tile) {

@@ -20,6 +20,8 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
       c.samples.size() * static_cast<std::size_t>(stride) * static_cast<std::size_t>(tiling.tileHeight);
   depth.assign(samples, kNoDepth);
   ids.assign(samples, kNoRecord);
+  for (std::vector<float>& plane : normal) plane.resize(samples / c.samples.size());
+  if (c.samples.size() > 1) centerDepth.resize(samples / c.samples.size());
   sampleRange = {kSubpixels, 0};
   for (const SamplePosition at : c.samples) {
     sampleRange.low = std::min({sampleRange.low, at.x, at.y});
@@ -90,11 +92,11 @@ std::uint64_t Tile::orderOf(const Record& record) const {
 }
 
 std::size_t Tile::memoryBytes() const {
-  return depth.capacity() * sizeof(float) + ids.capacity() * sizeof(std::uint32_t) +
-         records.capacity() * sizeof(Record) + corners.capacity() * sizeof(Corners) +
-         blocks.capacity() * sizeof(VertexBlock) + surfaces.capacity() * sizeof(Surface) +
-         attributes.capacity() * sizeof(Attributes) + colors.capacity() * sizeof(glm::vec4) +
-         isBlended.capacity();
+  return (depth.capacity() + 3 * normal[0].capacity() + centerDepth.capacity()) * sizeof(float) +
+         ids.capacity() * sizeof(std::uint32_t) + records.capacity() * sizeof(Record) +
+         corners.capacity() * sizeof(Corners) + blocks.capacity() * sizeof(VertexBlock) +
+         surfaces.capacity() * sizeof(Surface) + attributes.capacity() * sizeof(Attributes) +
+         colors.capacity() * sizeof(glm::vec4) + isBlended.capacity();
 }
 
 }  // namespace limn::raster

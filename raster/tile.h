@@ -72,6 +72,8 @@ class Tile {
   /// Empties the tile at column, row of the tiling.
   void begin(const FrameContext& context, std::size_t index);
 
+  /// Nothing is drawn in it.
+  bool isEmpty() const { return clusters.empty() && loose.empty() && !overlaid; }
   std::size_t offset(int sample, int x, int y) const {  ///< x, y from the tile's corner
     return (static_cast<std::size_t>(sample) * static_cast<std::size_t>(height) +
             static_cast<std::size_t>(y)) *
@@ -105,6 +107,14 @@ class Tile {
     if (keepsCorners() && corners.size() < records.size()) corners.resize(records.size());
   }
   bool keepsCorners() const { return context->samples.size() > 1; }
+  /// Interpolates what shading needs of a record at the centre of a pixel that it has won a sample of.
+  void setPoint(const Record& record, int x, int y) {
+    const std::int32_t px = (left + x) * kSubpixels + kOneSample[0].x,
+                       py = (top + y) * kSubpixels + kOneSample[0].y;
+    const std::size_t o = offset(0, x, y);
+    for (int i = 0; i < 3; ++i) normal[i][o] = record.value(i, px, py);
+    if (context->samples.size() > 1) centerDepth[o] = record.value(3, px, py);
+  }
   /// Submission order.
   std::uint64_t orderOf(const Record& record) const;
   Surface surfaceOf(std::uint32_t batch, std::uint32_t cluster) const;
@@ -116,8 +126,12 @@ class Tile {
   int stride = 0;                  ///< from row to row; kernels may write whole vectors beyond the width
   std::vector<float> depth;        // by offset()
   std::vector<std::uint32_t> ids;  // record that won the sample
-  std::vector<Record> records;     // the first recordCount
-  std::vector<Corners> corners;    // of records, in drawing order; only with several samples
+  // At pixel centres, of the record that won a sample of the pixel last: where all samples show the same record, of
+  // that one. Normal · q, and depth where no sample lies at the centre.
+  std::array<std::vector<float>, 3> normal;
+  std::vector<float> centerDepth;
+  std::vector<Record> records;   // the first recordCount
+  std::vector<Corners> corners;  // of records, in drawing order; only with several samples
   std::uint32_t recordCount = 0;
   std::vector<Attributes> attributes;
   std::vector<Surface> surfaces;            // of the tile's clusters

@@ -54,6 +54,7 @@ void drawTriangle(Tile& tile, TriangleSetup& t) {
         tile.depth[o] = t.depthAt(tile, s, x, y);
         tile.ids[o] = id;
       }
+      tile.setPoint(t.record, x, y);
     }
 }
 
