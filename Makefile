@@ -86,8 +86,11 @@ bench: bench-packages
 
 # What a run finds is mended, and the input kept in tests/fuzz/corpus, where every later run starts.
 FUZZ_SECONDS ?= 60
+FUZZ = -max_total_time=$$(($(FUZZ_SECONDS) / 2)) -timeout=5 -rss_limit_mb=1024 -print_final_stats=1
 fuzz: check-packages
-	@$(call compile,fuzz,limn_fuzz_loader)
-	@mkdir -p build/fuzz/found
-	build/fuzz/tests/fuzz/limn_fuzz_loader -max_total_time=$(FUZZ_SECONDS) -max_len=65536 -timeout=5 \
-	  -rss_limit_mb=1024 -artifact_prefix=build/fuzz/ build/fuzz/found tests/fuzz/corpus
+	@$(call compile,fuzz,limn_fuzz_loader limn_fuzz_frame)
+	@mkdir -p build/fuzz/loader build/fuzz/frame
+	build/fuzz/tests/fuzz/limn_fuzz_loader $(FUZZ) -max_len=65536 -dict=tests/fuzz/gltf.dict \
+	  -artifact_prefix=build/fuzz/loader- build/fuzz/loader tests/fuzz/corpus/loader
+	build/fuzz/tests/fuzz/limn_fuzz_frame $(FUZZ) -max_len=4096 \
+	  -artifact_prefix=build/fuzz/frame- build/fuzz/frame tests/fuzz/corpus/frame

@@ -23,43 +23,63 @@ DecodeTable decodeTable(Texture::Content content) {
   return table;
 }
 
-// One row or column halved: each new texel is the mean of the old ones under it, by area, whatever the old
-// size.
-void halve(const float* in, std::int32_t from, std::size_t inStride, float* out, std::int32_t to,
-           std::size_t outStride) {
-  const float scale = static_cast<float>(from) / static_cast<float>(to);
-  for (std::int32_t i = 0; i < to; ++i) {
-    const float begin = static_cast<float>(i) * scale, end = static_cast<float>(i + 1) * scale;
-    float sum[4] = {};
-    for (auto k = static_cast<std::int32_t>(begin); k < from && static_cast<float>(k) < end; ++k) {
-      const float part = std::min(end, static_cast<float>(k + 1)) - std::max(begin, static_cast<float>(k));
-      for (std::size_t c = 0; c < 4; ++c) sum[c] += in[static_cast<std::size_t>(k) * inStride + c] * part;
+// Old texels [begin, end), in parts of whole ones, are under new texel i of `to` where there were `from`.
+struct Span {
+  float begin, end;
+  std::int32_t first;
+
+  Span(std::int32_t i, std::int32_t from, std::int32_t to) {
+    const float scale = static_cast<float>(from) / static_cast<float>(to);
+    begin = static_cast<float>(i) * scale;
+    end = static_cast<float>(i + 1) * scale;
+    first = static_cast<std::int32_t>(begin);
+  }
+  bool holds(std::int32_t k) const { return static_cast<float>(k) < end; }
+  float partOf(std::int32_t k) const {
+    return std::min(end, static_cast<float>(k + 1)) - std::max(begin, static_cast<float>(k));
+  }
+};
+
+// A row of texels made narrower and added to `sum`, `weight` times.
+void addNarrowed(const std::uint16_t* row, std::int32_t from, std::int32_t to, float weight, float* sum) {
+  for (std::int32_t x = 0; x < to; ++x, sum += 4) {
+    const Span under(x, from, to);
+    for (std::int32_t k = under.first; k < from && under.holds(k); ++k) {
+      const float part = under.partOf(k) * weight;
+      for (int c = 0; c < 4; ++c) sum[c] += static_cast<float>(row[4 * k + c]) * part;
     }
-    for (std::size_t c = 0; c < 4; ++c) out[static_cast<std::size_t>(i) * outStride + c] = sum[c] / scale;
   }
 }
 
-// The next level of a float image, in place of it.
-void shrink(std::vector<float>& image, const TextureLevel& from, const TextureLevel& to) {
-  const auto fw = static_cast<std::size_t>(from.width), fh = static_cast<std::size_t>(from.height);
-  const auto tw = static_cast<std::size_t>(to.width), th = static_cast<std::size_t>(to.height);
-  std::vector<float> narrow(4 * tw * fh);
-  for (std::size_t y = 0; y < fh; ++y)
-    halve(&image[4 * fw * y], from.width, 4, &narrow[4 * tw * y], to.width, 4);
-  image.resize(4 * tw * th);
-  for (std::size_t x = 0; x < tw; ++x)
-    halve(&narrow[4 * x], from.height, 4 * tw, &image[4 * x], to.height, 4 * tw);
+// Each texel of the next level is the mean of those under it, by area, whatever the size; row after row, so that
+// nothing but the texels themselves takes memory.
+void appendLevel(Texture::Data& d) {
+  const TextureLevel from = d.levels.back();
+  const TextureLevel to{std::max(1, from.width / 2), std::max(1, from.height / 2), d.texels.size() / 4};
+  const float area = static_cast<float>(from.width) / static_cast<float>(to.width) *
+                     (static_cast<float>(from.height) / static_cast<float>(to.height));
+  std::vector<float> sum(4 * static_cast<std::size_t>(to.width));
+  for (std::int32_t y = 0; y < to.height; ++y) {
+    std::fill(sum.begin(), sum.end(), 0.0F);
+    const Span under(y, from.height, to.height);
+    for (std::int32_t k = under.first; k < from.height && under.holds(k); ++k) {
+      const std::size_t row = from.first + static_cast<std::size_t>(k) * static_cast<std::size_t>(from.width);
+      addNarrowed(&d.texels[4 * row], from.width, to.width, under.partOf(k), sum.data());
+    }
+    for (const float v : sum)
+      d.texels.push_back(static_cast<std::uint16_t>(std::min(v / area + 0.5F, 65535.0F)));
+  }
+  d.levels.push_back(to);
 }
 
-void buildLevels(Texture::Data& d) {
-  std::vector<float> image(d.texels.begin(), d.texels.end());
-  while (d.levels.back().width > 1 || d.levels.back().height > 1) {
-    const TextureLevel from = d.levels.back();
-    const TextureLevel to{std::max(1, from.width / 2), std::max(1, from.height / 2), d.texels.size() / 4};
-    shrink(image, from, to);
-    for (const float v : image) d.texels.push_back(static_cast<std::uint16_t>(std::min(v + 0.5F, 65535.0F)));
-    d.levels.push_back(to);
+std::size_t texelsOfAllLevels(std::size_t width, std::size_t height) {
+  std::size_t texels = width * height;
+  while (width > 1 || height > 1) {
+    width = std::max<std::size_t>(1, width / 2);
+    height = std::max<std::size_t>(1, height / 2);
+    texels += width * height;
   }
+  return texels;
 }
 
 bool usesMips(Filter filter) {
@@ -68,24 +88,48 @@ bool usesMips(Filter filter) {
 
 }  // namespace
 
-Texture::Texture(int width, int height, std::span<const std::uint8_t> rgba8, Content content,
-                 const Sampler& sampler) {
+Texture::Texture(int width, int height, const std::function<void(std::span<std::uint8_t> row)>& nextRow,
+                 Content content, const Sampler& sampler) {
   require(width >= 1 && width <= 16384 && height >= 1 && height <= 16384, "texture sizes are 1 to 16384");
-  require(rgba8.size() == 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
-          "rgba8 must hold 4 bytes per pixel");
   data_ = std::make_unique<Data>();
   Data& d = *data_;
   d.sampler = sampler;
   d.levels.push_back({width, height, 0});
-  d.texels.reserve(rgba8.size() + rgba8.size() / 2);
+  const std::size_t w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
+  const bool mips = usesMips(sampler.minification);
+  d.texels.reserve(4 * (mips ? texelsOfAllLevels(w, h) : w * h));
   const DecodeTable color = decodeTable(content), alpha = decodeTable(Content::kLinear);
-  for (std::size_t i = 0; i < rgba8.size(); ++i) {
-    const bool isAlpha = i % 4 == 3;
-    d.texels.push_back((isAlpha ? alpha : color)[rgba8[i]]);
-    d.transparent |= isAlpha && rgba8[i] < 255;
+  std::vector<std::uint8_t> row(4 * w);
+  for (int y = 0; y < height; ++y) {
+    nextRow(row);
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const bool isAlpha = i % 4 == 3;
+      d.texels.push_back((isAlpha ? alpha : color)[row[i]]);
+      d.transparent |= isAlpha && row[i] < 255;
+    }
   }
-  if (usesMips(sampler.minification)) buildLevels(d);
+  while (mips && (d.levels.back().width > 1 || d.levels.back().height > 1)) appendLevel(d);
 }
+
+namespace {
+
+/// Hands out the rows of a whole picture.
+std::function<void(std::span<std::uint8_t>)> rowsOf(int width, int height,
+                                                    std::span<const std::uint8_t> rgba8) {
+  require(width >= 1 && height >= 1 &&
+              rgba8.size() == 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+          "rgba8 must hold 4 bytes per pixel");
+  return [rest = rgba8](std::span<std::uint8_t> row) mutable {
+    std::copy(rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(row.size()), row.begin());
+    rest = rest.subspan(row.size());
+  };
+}
+
+}  // namespace
+
+Texture::Texture(int width, int height, std::span<const std::uint8_t> rgba8, Content content,
+                 const Sampler& sampler)
+    : Texture(width, height, rowsOf(width, height, rgba8), content, sampler) {}
 
 Texture::~Texture() = default;
 Texture::Texture(Texture&&) noexcept = default;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -32,6 +33,10 @@ class Texture {
   /// two. Throws std::invalid_argument for other sizes or a span of the wrong length.
   Texture(int width, int height, std::span<const std::uint8_t> rgba8, Content content,
           const Sampler& sampler);
+  /// The same from rows that are made one after the other, so that the picture need not be in memory as well:
+  /// `nextRow` fills in the next one, of 4 · width bytes, from the first on.
+  Texture(int width, int height, const std::function<void(std::span<std::uint8_t> row)>& nextRow,
+          Content content, const Sampler& sampler);
   ~Texture();
   Texture(Texture&&) noexcept;
   Texture& operator=(Texture&&) noexcept;

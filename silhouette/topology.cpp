@@ -39,10 +39,13 @@ std::uint32_t bitsOf(float x) {
 std::size_t weld(std::span<const glm::vec3> positions, Indices& points) {
   Indices order(positions.size()), spare(positions.size()), starts;
   std::iota(order.begin(), order.end(), 0u);
+  // Few vertices are sorted by short digits: counting 2^16 long ones would take longer than sorting them.
+  constexpr std::size_t kFew = 1U << 14;
+  const std::uint32_t bits = positions.size() < kFew ? 8 : 16, digits = 1U << bits;
   for (int axis = 0; axis < 3; ++axis)
-    for (int shift = 0; shift < 32; shift += 16)
-      sortStably(order, spare, starts, 0x10000,
-                 [&](std::uint32_t v) { return bitsOf(positions[v][axis]) >> shift & 0xffff; });
+    for (std::uint32_t shift = 0; shift < 32; shift += bits)
+      sortStably(order, spare, starts, digits,
+                 [&](std::uint32_t v) { return bitsOf(positions[v][axis]) >> shift & (digits - 1); });
 
   // Equal positions are now neighbours, the first vertex of each group in front: it stands for the group.
   points.resize(positions.size());

@@ -53,13 +53,13 @@ class Coarsening {
       : options_(options), workers_(options.threads), progress_(0, options.quiet) {}
 
   std::vector<std::uint8_t> run() {
-    const coarsen::Source fine = open(options_.fine);
+    const scene::Source fine = open(options_.fine);
     if (!options_.coarse) {
       std::vector<scene::Mesh> meshes;
       for (std::size_t m = 0; m < fine.scene.meshes.size(); ++m) meshes.push_back(smaller(fine, m));
       return coarsen::withMeshes(fine, meshes);
     }
-    coarsen::Source coarse = open(*options_.coarse);
+    scene::Source coarse = open(*options_.coarse);
     if (coarse.scene.meshes.size() != fine.scene.meshes.size())
       throw scene::InputError(*options_.coarse + ": has " + std::to_string(coarse.scene.meshes.size()) +
                               " meshes, " + options_.fine + " has " +
@@ -78,17 +78,18 @@ class Coarsening {
   Summary summary;
 
  private:
-  coarsen::Source open(const std::string& model) {
-    coarsen::Source source = coarsen::openSource(model);
+  scene::Source open(const std::string& model) {
+    scene::Source source = scene::openSource(model);
     std::size_t triangles = 0;
     for (const scene::Mesh& mesh : source.scene.meshes) triangles += mesh.indices.size() / 3;
-    if (triangles == 0) throw scene::InputError(source.name + ": holds no triangles; name a model that does");
+    if (triangles == 0)
+      throw scene::InputError(source.file.name + ": holds no triangles; name a model that does");
     if (!options_.quiet)
-      for (const std::string& notice : source.scene.notices) printMessage(source.name + ": " + notice);
+      for (const std::string& notice : source.scene.notices) printMessage(source.file.name + ": " + notice);
     return source;
   }
 
-  scene::Mesh smaller(const coarsen::Source& fine, std::size_t m) {
+  scene::Mesh smaller(const scene::Source& fine, std::size_t m) {
     const scene::Mesh& mesh = fine.scene.meshes[m];
     if (mesh.indices.empty()) return mesh;
     coarsen::Report report;
@@ -108,7 +109,7 @@ class Coarsening {
     return *std::move(small);
   }
 
-  coarsen::Progress part(const coarsen::Source& fine, std::size_t mesh) {
+  coarsen::Progress part(const scene::Source& fine, std::size_t mesh) {
     const std::vector<double> from = progressOf(fine.scene.meshes);
     return [this, first = from[mesh], next = from[mesh + 1]](double done) {
       progress_.showPart(first + (next - first) * done);

@@ -14,7 +14,8 @@ int refine(const RefineOptions& options) {
   const bool toStandardOutput = options.output == "-";
   if (toStandardOutput && ::isatty(STDOUT_FILENO) == 1)
     throw UsageError("standard output is a terminal; redirect it to a file or a pipe");
-  const scene::Scene scene = scene::load(options.job.model, {options.job.creaseDegrees});
+  const scene::Source source = scene::openSource(options.job.model, {options.job.creaseDegrees});
+  const scene::Scene& scene = source.scene;
   if (!options.quiet)
     for (const std::string& notice : scene.notices) printMessage("note: " + notice);
   const Job job = makeJob(scene, options.job);
@@ -26,7 +27,7 @@ int refine(const RefineOptions& options) {
   scene::FrameDrawer drawer(scene, options.threads);
   drawer.refine(pose, job.camera(options.frame, pose), job.settings(options.frame));
   const std::vector<std::uint8_t> glb =
-      scene::exportRefined(scene, pose, drawer, {options.alphas, job.text(options.frame)});
+      scene::exportRefined(source, pose, drawer, {options.alphas, job.text(options.frame)});
   if (toStandardOutput) {
     scene::writeAll(STDOUT_FILENO, "standard output", glb.data(), glb.size());
     return kDone;

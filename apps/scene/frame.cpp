@@ -201,9 +201,10 @@ raster::Draw FrameDrawer::State::describe(const Instance& instance,
 }
 
 RefinedInstance FrameDrawer::State::refined(const InstanceResources& resources) const {
-  return {resources.shape,   &meshes[resources.mesh]->topology,
-          &resources.stream, resources.texcoords,
-          resources.colors,  resources.shapeToWorld};
+  return {resources.shape,          &meshes[resources.mesh]->topology,
+          &resources.stream,        resources.texcoords,
+          resources.colors,         resources.shapeTangents,
+          resources.streamTangents, resources.shapeToWorld};
 }
 
 void FrameDrawer::State::addOverlays(const OverlaySet& wanted) {

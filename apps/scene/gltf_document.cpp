@@ -119,18 +119,18 @@ GltfDocument::GltfDocument(std::string file, std::vector<std::uint8_t> bytes, co
 
 void GltfDocument::parse(std::size_t jsonOffset, std::string_view text, const Folder& folder, Binary binary) {
   json document = parseGltfJson(file_, text, jsonOffset, notices);
-  std::size_t inputBytes = bytes_.size();
+  inputBytes_ = bytes_.size();
   if (document.contains("buffers")) {
     for (const json& buffer : document["buffers"]) {
       buffers.push_back(readBuffer(*this, buffers.size(), buffer, folder, binary));
-      inputBytes += buffers.back().owned.size();
+      inputBytes_ += buffers.back().owned.size();
     }
   }
   if (document.contains("images")) {
     for (const json& image : document["images"])
       images.push_back(readImage(*this, images.size(), image, folder));
   }
-  budget_ = Budget(inputBytes);
+  budget_ = Budget(inputBytes_);
   viewCount = adaptForTinygltf(document);
   const std::string checked = document.dump();
   document = nullptr;

@@ -32,10 +32,10 @@ class Budget {
   std::size_t left() const { return left_; }
 
  private:
-  // Whatever the file's size, one picture of 2048 x 2048 pixels while its mip levels are built; and 256 times
-  // the input: a JPEG of a fifth of a byte per pixel becomes 40 bytes for a while, positions of three bytes
-  // positions, normals and tangents of 40. From 64 KiB come at most 176 MiB.
-  static constexpr std::size_t kBase = 160U << 20;
+  // Whatever the file's size, one picture of 4096 x 4096 pixels with its mip levels; and 256 times the input: a
+  // JPEG of a twentieth of a byte per pixel becomes 11 bytes, positions of three bytes positions, normals and tangents
+  // of 40. From 64 KiB come at most 192 MiB.
+  static constexpr std::size_t kBase = 176U << 20;
   static constexpr std::size_t kPerByte = 256;
   std::size_t left_;
 };
@@ -61,11 +61,14 @@ class GltfDocument {
   GltfDocument(const GltfDocument&) = delete;
   GltfDocument& operator=(const GltfDocument&) = delete;
 
+  const std::string& file() const { return file_; }
   [[noreturn]] void refuse(const std::string& place, const std::string& what) const;
   /// Takes `bytes` from the budget or refuses the file.
   void charge(std::size_t bytes, const std::string& place);
   /// An external file of `inputBytes` was read: as much more may be made of it.
   void grow(std::size_t inputBytes) { budget_.grow(inputBytes); }
+  /// Of the file and the buffers that it refers to.
+  std::size_t inputBytes() const { return inputBytes_; }
   /// Refuses the file if `bytes` are not left, without taking them.
   void checkRoom(std::size_t bytes, const std::string& place) const;
   void notice(std::string sentence) { notices.push_back(std::move(sentence)); }
@@ -84,6 +87,7 @@ class GltfDocument {
 
   std::string file_;
   std::vector<std::uint8_t> bytes_;
+  std::size_t inputBytes_ = 0;
   Budget budget_{0};
 };
 

@@ -1,112 +1,34 @@
-// Based on: glTF 2.0 Specification, Khronos 2021, sections 3.7.2 (meshes) and 4.4 (binary layout).
+// Based on: glTF 2.0 Specification, Khronos 2021, section 3.7.2 (meshes).
 #include "apps/scene/gltf_export.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 #include <span>
+
+#include "apps/scene/gltf_rewriter.h"
 
 namespace limn::scene {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-enum BufferTarget { kVertices = 34962, kIndices = 34963 };
 enum PrimitiveMode { kLines = 1, kTriangles = 4 };
-constexpr int kFloat = 5126, kUnsignedInt = 5125;
-
-/// Collects the binary chunk, with a view and an accessor for each array.
-class Arrays {
- public:
-  explicit Arrays(Json& document) : document_(document) {}
-
-  /// `width` floats per element.
-  int addFloats(std::span<const float> values, std::size_t width) {
-    static constexpr const char* kTypes[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
-    return add(values.data(), values.size_bytes(), kVertices, kFloat, values.size() / width, kTypes[width]);
-  }
-  int addPositions(std::span<const float> values) {
-    const int index = addFloats(values, 3);
-    for (const bool upper : {false, true}) {
-      Json bound = Json::array();
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        float extreme = values[axis];
-        for (std::size_t i = axis; i < values.size(); i += 3)
-          extreme = upper ? std::max(extreme, values[i]) : std::min(extreme, values[i]);
-        bound.push_back(extreme);
-      }
-      document_["accessors"][static_cast<std::size_t>(index)][upper ? "max" : "min"] = bound;
-    }
-    return index;
-  }
-  int addIndices(std::span<const std::uint32_t> values) {
-    return add(values.data(), values.size_bytes(), kIndices, kUnsignedInt, values.size(), "SCALAR");
-  }
-
-  const std::vector<std::uint8_t>& bytes() const { return bytes_; }
-
- private:
-  int add(const void* data, std::size_t size, BufferTarget target, int componentType, std::size_t count,
-          const char* type) {
-    const std::size_t offset = bytes_.size();
-    bytes_.resize(offset + size);  // every size is a multiple of four
-    std::memcpy(bytes_.data() + offset, data, size);
-    document_["bufferViews"].push_back(
-        {{"buffer", 0}, {"byteOffset", offset}, {"byteLength", size}, {"target", static_cast<int>(target)}});
-    document_["accessors"].push_back({{"bufferView", document_["bufferViews"].size() - 1},
-                                      {"componentType", componentType},
-                                      {"count", count},
-                                      {"type", type}});
-    return static_cast<int>(document_["accessors"].size()) - 1;
-  }
-
-  Json& document_;
-  std::vector<std::uint8_t> bytes_;
-};
 
 /// The mesh's values, then those of the stream's vertices.
 template <class T>
-std::vector<float> joined(std::span<const T> mesh, std::span<const T> stream) {
-  constexpr std::size_t kWidth = sizeof(T) / sizeof(float);
-  std::vector<float> all;
-  all.reserve(kWidth * (mesh.size() + stream.size()));
-  for (const std::span<const T> part : {mesh, stream})
-    for (const T& value : part)
-      for (std::size_t c = 0; c < kWidth; ++c) all.push_back(value[static_cast<int>(c)]);
+std::vector<T> joined(std::span<const T> mesh, std::span<const T> stream) {
+  std::vector<T> all(mesh.begin(), mesh.end());
+  all.insert(all.end(), stream.begin(), stream.end());
   return all;
 }
 
-/// glTF wants unit normals to within rounding.
-void normalize(std::vector<float>& normals) {
-  for (std::size_t i = 0; i + 2 < normals.size(); i += 3) {
-    const glm::dvec3 n(normals[i], normals[i + 1], normals[i + 2]);
-    const double length = std::sqrt(glm::dot(n, n));
-    const glm::dvec3 unit = length > 0.0 ? n / length : glm::dvec3(0.0, 0.0, 1.0);
-    for (std::size_t c = 0; c < 3; ++c) normals[i + c] = static_cast<float>(unit[static_cast<int>(c)]);
-  }
-}
-
-/// Colours beyond [0, 1] are out of the format's range.
-void clampColors(std::vector<float>& colors) {
-  for (float& c : colors) c = std::clamp(c, 0.0f, 1.0f);
-}
-
-Json materialJson(const raster::Material& m, bool& usesUnlit) {
-  constexpr const char* kAlphaModes[] = {"OPAQUE", "MASK", "BLEND"};
-  Json json = {{"pbrMetallicRoughness",
-                {{"baseColorFactor", {m.baseColor.r, m.baseColor.g, m.baseColor.b, m.baseColor.a}},
-                 {"metallicFactor", 0},
-                 {"roughnessFactor", 0.5}}},
-               {"alphaMode", kAlphaModes[static_cast<int>(m.alphaMode)]},
-               {"doubleSided", m.doubleSided}};
-  if (m.alphaMode == raster::AlphaMode::kMask) json["alphaCutoff"] = m.alphaCutoff;
-  if (m.unlit) {
-    json["extensions"] = {{"KHR_materials_unlit", Json::object()}};
-    usesUnlit = true;
-  }
-  return json;
+/// glTF wants unit vectors to within rounding.
+glm::vec3 unit(const glm::vec3& v) {
+  const glm::dvec3 n(v);
+  const double length = std::sqrt(glm::dot(n, n));
+  return length > 0.0 ? glm::vec3(n / length) : glm::vec3(0.0f, 0.0f, 1.0f);
 }
 
 /// Triangles of one part: those of the mesh that are not replaced, and those of the stream that replace the others.
@@ -125,49 +47,69 @@ std::vector<std::uint32_t> partIndices(const RefinedInstance& instance, const ra
   return indices;
 }
 
-Json meshJson(const Mesh& mesh, const RefinedInstance& instance, Arrays& arrays) {
+/// One set of texture coordinates serves for all that the materials ask for, as it does when limn draws.
+void addTexcoords(const Mesh& mesh, const RefinedInstance& instance, GlbBuilder& builder, Json& attributes) {
+  if (mesh.texcoords.empty()) return;
+  const int accessor = builder.addVertices(joined<glm::vec2>(mesh.texcoords, instance.texcoords));
+  for (int set = 0; set <= highestTexcoordSet(builder.root); ++set)
+    attributes["TEXCOORD_" + std::to_string(set)] = accessor;
+}
+
+Json addAttributes(const Mesh& mesh, const RefinedInstance& instance, GlbBuilder& builder) {
   const silhouette::RefinedStream& stream = *instance.stream;
-  const std::vector<float> positions = joined<glm::vec3>(instance.shape.positions, stream.positions);
-  std::vector<float> normals = joined<glm::vec3>(instance.shape.normals, stream.normals);
-  normalize(normals);
-  Json attributes = {{"POSITION", arrays.addPositions(positions)}, {"NORMAL", arrays.addFloats(normals, 3)}};
-  if (!mesh.texcoords.empty())
-    attributes["TEXCOORD_0"] = arrays.addFloats(joined<glm::vec2>(mesh.texcoords, instance.texcoords), 2);
-  if (!mesh.colors.empty()) {
-    std::vector<float> colors = joined<glm::vec4>(mesh.colors, instance.colors);
-    clampColors(colors);
-    attributes["COLOR_0"] = arrays.addFloats(colors, 4);
+  std::vector<glm::vec3> normals = joined<glm::vec3>(instance.shape.normals, stream.normals);
+  std::transform(normals.begin(), normals.end(), normals.begin(), unit);
+  Json attributes = {
+      {"POSITION", builder.addPositions(joined<glm::vec3>(instance.shape.positions, stream.positions))},
+      {"NORMAL", builder.addVertices(normals)}};
+  if (!instance.meshTangents.empty()) {
+    std::vector<glm::vec4> tangents = joined<glm::vec4>(instance.meshTangents, instance.tangents);
+    for (glm::vec4& t : tangents) t = glm::vec4(unit(glm::vec3(t)), t.w < 0.0f ? -1.0f : 1.0f);
+    attributes["TANGENT"] = builder.addVertices(tangents);
   }
+  addTexcoords(mesh, instance, builder, attributes);
+  if (!mesh.colors.empty()) {  // beyond [0, 1] they are out of the format's range
+    std::vector<glm::vec4> colors = joined<glm::vec4>(mesh.colors, instance.colors);
+    for (glm::vec4& c : colors) c = glm::clamp(c, 0.0f, 1.0f);
+    attributes["COLOR_0"] = builder.addVertices(colors);
+  }
+  return attributes;
+}
+
+Json meshJson(const Mesh& mesh, const RefinedInstance& instance, std::size_t materials, GlbBuilder& builder) {
+  const Json attributes = addAttributes(mesh, instance, builder);
+  const std::size_t vertices = instance.shape.positions.size() + instance.stream->positions.size();
   Json primitives = Json::array();
   for (const raster::Part& part : mesh.parts) {
     const std::vector<std::uint32_t> indices = partIndices(instance, part);
     if (indices.empty()) continue;
-    primitives.push_back({{"attributes", attributes},
-                          {"indices", arrays.addIndices(indices)},
-                          {"material", part.material},
-                          {"mode", static_cast<int>(kTriangles)}});
+    Json& primitive = primitives.emplace_back(Json{{"attributes", attributes},
+                                                   {"indices", builder.addTriangles(indices, vertices)},
+                                                   {"mode", static_cast<int>(kTriangles)}});
+    if (part.material < materials)
+      primitive["material"] = part.material;  // else glTF's default, as in the scene
   }
   return {{"name", mesh.name}, {"primitives", primitives}};
 }
 
 /// The edges of the coarse mesh as lines: two vertices each, with the edge's silhouetteness.
 Json edgesJson(const Mesh& mesh, const RefinedInstance& instance, const std::vector<float>& alphas,
-               Arrays& arrays) {
+               GlbBuilder& builder) {
   const silhouette::Topology& topology = *instance.topology;
   std::vector<std::uint32_t> vertexOf(topology.pointCount());
   for (std::size_t v = topology.points().size(); v-- > 0;)
     vertexOf[topology.points()[v]] = static_cast<std::uint32_t>(v);
-  std::vector<float> positions, values;
+  std::vector<glm::vec3> positions;
+  std::vector<float> values;
   for (std::size_t e = 0; e < topology.edges().size(); ++e)
     for (const std::uint32_t point : topology.edges()[e].point) {
-      const glm::vec3& p = instance.shape.positions[vertexOf[point]];
-      positions.insert(positions.end(), {p.x, p.y, p.z});
+      positions.push_back(instance.shape.positions[vertexOf[point]]);
       values.push_back(alphas[e]);
     }
   return {{"name", mesh.name + " edges"},
           {"primitives",
            {{{"attributes",
-              {{"POSITION", arrays.addPositions(positions)}, {"_ALPHA", arrays.addFloats(values, 1)}}},
+              {{"POSITION", builder.addPositions(positions)}, {"_ALPHA", builder.addScalars(values)}}},
              {"mode", static_cast<int>(kLines)}}}}};
 }
 
@@ -178,58 +120,62 @@ Json nodeJson(const std::string& name, std::size_t mesh, const glm::dmat4& toWor
   return {{"name", name}, {"mesh", mesh}, {"matrix", matrix}};
 }
 
-void append32(std::vector<std::uint8_t>& out, std::size_t value) {
-  for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
-}
-
-/// Header, JSON chunk, BIN chunk; both chunks end on a multiple of four.
-std::vector<std::uint8_t> container(std::string json, const std::vector<std::uint8_t>& bytes) {
-  json.resize((json.size() + 3) / 4 * 4, ' ');
-  std::vector<std::uint8_t> out;
-  append32(out, 0x46546c67);  // "glTF"
-  append32(out, 2);
-  append32(out, 12 + 8 + json.size() + (bytes.empty() ? 0 : 8 + bytes.size()));
-  append32(out, json.size());
-  append32(out, 0x4e4f534a);  // "JSON"
-  out.insert(out.end(), json.begin(), json.end());
-  if (bytes.empty()) return out;
-  append32(out, bytes.size());
-  append32(out, 0x004e4942);  // "BIN"
-  out.insert(out.end(), bytes.begin(), bytes.end());
-  return out;
-}
-
-}  // namespace
-
-std::vector<std::uint8_t> exportRefined(const Scene& scene, const Pose& pose, FrameDrawer& drawer,
-                                        const ExportOptions& options) {
-  Json document = {{"asset", {{"version", "2.0"}, {"generator", options.generator}}}, {"scene", 0}};
-  Json roots = Json::array();
-  Arrays arrays(document);
-  std::vector<float> alphas;
+/// The instances of the frame as meshes and nodes of a GLB that holds their materials.
+void addInstances(const Scene& scene, const Pose& pose, FrameDrawer& drawer, const ExportOptions& options,
+                  GlbBuilder& builder) {
+  Json& root = builder.root;
+  root["asset"]["version"] = "2.0";
+  root["asset"]["generator"] = options.generator;
+  Json nodes = Json::array(), meshes = Json::array();
   const auto place = [&](Json mesh, const glm::dmat4& toWorld) {
     if (mesh["primitives"].empty()) return;
-    document["nodes"].push_back(nodeJson(mesh["name"], document["meshes"].size(), toWorld));
-    roots.push_back(document["nodes"].size() - 1);
-    document["meshes"].push_back(std::move(mesh));
+    nodes.push_back(nodeJson(mesh["name"], meshes.size(), toWorld));
+    meshes.push_back(std::move(mesh));
   };
+  std::vector<float> alphas;
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
     const Mesh& mesh = scene.meshes[pose.instances[i].mesh];
     if (mesh.indices.empty() || !pose.instances[i].visible) continue;
     const RefinedInstance instance = drawer.instance(i);
-    place(meshJson(mesh, instance, arrays), instance.shapeToWorld);
+    place(meshJson(mesh, instance, scene.materials.size() - 1, builder), instance.shapeToWorld);
     if (!options.alphas) continue;
     drawer.silhouetteness(i, alphas);
-    if (!alphas.empty()) place(edgesJson(mesh, instance, alphas, arrays), instance.shapeToWorld);
+    if (!alphas.empty()) place(edgesJson(mesh, instance, alphas, builder), instance.shapeToWorld);
   }
-  document["scenes"] = {{{"nodes", roots}}};
-  if (roots.empty()) document["scenes"] = Json::array({Json::object()});
-  bool usesUnlit = false;
-  for (const raster::Material& material : scene.materials)
-    document["materials"].push_back(materialJson(material, usesUnlit));
-  if (usesUnlit) document["extensionsUsed"] = {"KHR_materials_unlit"};
-  if (!arrays.bytes().empty()) document["buffers"] = {{{"byteLength", arrays.bytes().size()}}};
-  return container(document.dump(-1, ' ', false, Json::error_handler_t::replace), arrays.bytes());
+  root["scene"] = 0;
+  root["scenes"] = Json::array({Json::object()});
+  if (nodes.empty()) return;
+  for (std::size_t i = 0; i < nodes.size(); ++i) root["scenes"][0]["nodes"].push_back(i);
+  root["nodes"] = std::move(nodes);
+  root["meshes"] = std::move(meshes);
+}
+
+}  // namespace
+
+void addBuiltinMaterials(const Scene& scene, Json& root) {
+  for (std::size_t i = 0; i + 1 < scene.materials.size(); ++i) {
+    const raster::Material& m = scene.materials[i];
+    root["materials"].push_back(
+        {{"pbrMetallicRoughness",
+          {{"baseColorFactor", {m.baseColor.r, m.baseColor.g, m.baseColor.b, m.baseColor.a}},
+           {"metallicFactor", 0},
+           {"roughnessFactor", 0.5}}},
+         {"doubleSided", m.doubleSided}});
+  }
+}
+
+std::vector<std::uint8_t> exportRefined(const Source& source, const Pose& pose, FrameDrawer& drawer,
+                                        const ExportOptions& options) {
+  if (source.file.bytes.empty()) {
+    GlbBuilder builder;
+    addBuiltinMaterials(source.scene, builder.root);
+    addInstances(source.scene, pose, drawer, options, builder);
+    return builder.finish();
+  }
+  GltfRewriter rewriter(source.file);
+  rewriter.keepMaterialsOnly();
+  addInstances(source.scene, pose, drawer, options, rewriter.builder());
+  return rewriter.builder().finish();
 }
 
 }  // namespace limn::scene

@@ -61,7 +61,8 @@ json parseText(const std::string& file, std::string_view text, std::size_t offse
 
 // A number as a user would write it.
 std::string shortNumber(double value) {
-  return json(value).dump();
+  const bool isWhole = std::abs(value) < 1e15 && value == std::floor(value);
+  return isWhole ? std::to_string(static_cast<std::int64_t>(value)) : json(value).dump();
 }
 
 class SchemaCheck {

@@ -1,5 +1,6 @@
 #include "apps/scene/gltf_load.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "apps/scene/gltf_accessor.h"
@@ -14,20 +15,25 @@
 namespace limn::scene {
 namespace {
 
-/// Counts the triangles that the scene draws and charges what each copy of a mesh takes to draw: a small file may place a
-/// mesh many times.
+/// What drawing a triangle takes where its mesh is refined all over.
+constexpr std::size_t kBytesPerTriangle = 640;
+/// As many triangles are drawn for free per byte of the model beyond the first 64 KiB: a forest is many copies of a tree.
+constexpr std::size_t kFreeTrianglesPerByte = 20, kSmallFile = 64U << 10;
+
+/// Counts the triangles that the scene draws and charges what they take to draw: a small file may place a mesh many times.
 std::size_t chargeInstances(GltfDocument& document, const Scene& scene) {
-  constexpr std::size_t kBytesPerTriangle = 4,
-                        kBytesPerPosedVertex = sizeof(glm::vec3) * 2 + sizeof(glm::vec4);
+  constexpr std::size_t kBytesPerPosedVertex = sizeof(glm::vec3) * 2 + sizeof(glm::vec4);
   std::size_t triangles = 0;
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
     if (!scene.inScene[i] || scene.nodes[i].mesh < 0) continue;
     const Mesh& mesh = scene.meshes[static_cast<std::size_t>(scene.nodes[i].mesh)];
     const bool deforms = scene.nodes[i].skin >= 0 || !mesh.targets.empty();
-    document.charge(mesh.indices.size() / 3 * kBytesPerTriangle, "/nodes");
     if (deforms) document.charge(mesh.positions.size() * kBytesPerPosedVertex, "/nodes");
     triangles += mesh.indices.size() / 3;
   }
+  const std::size_t beyond = document.inputBytes() - std::min(document.inputBytes(), kSmallFile);
+  const std::size_t free = beyond * kFreeTrianglesPerByte;
+  document.charge((triangles - std::min(triangles, free)) * kBytesPerTriangle, "/nodes");
   return triangles;
 }
 

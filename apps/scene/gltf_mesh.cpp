@@ -150,9 +150,10 @@ class MeshReader {
     const double extent = std::max({half.x, half.y, half.z});
     const double distance = std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
     if (distance > kFar * extent) mesh_.origin = center;
-    if (extent > kHuge || (extent > 0.0 && extent < kTiny)) {
+    const double reach = std::max(extent, farthestTarget());
+    if (reach > kHuge || (reach > 0.0 && reach < kTiny)) {
       int exponent = 0;
-      std::frexp(extent, &exponent);
+      std::frexp(reach, &exponent);
       mesh_.scale = std::ldexp(1.0, exponent);
     }
     if (mesh_.origin == glm::dvec3(0.0) && mesh_.scale == 1.0) return;
@@ -160,6 +161,15 @@ class MeshReader {
     for (MorphTarget& target : mesh_.targets) {
       for (glm::vec3& p : target.positions) p = glm::vec3(glm::dvec3(p) / mesh_.scale);
     }
+  }
+
+  /// The largest coordinate of all targets: beside it the mesh itself may be tiny.
+  double farthestTarget() const {
+    double farthest = 0.0;
+    for (const MorphTarget& target : mesh_.targets)
+      for (const glm::vec3& p : target.positions)
+        farthest = std::max({farthest, std::abs(double{p.x}), std::abs(double{p.y}), std::abs(double{p.z})});
+    return farthest;
   }
 
   void makeMissingNormals() {

@@ -5,10 +5,14 @@
 #include <stb_image.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "apps/scene/gltf_uri.h"
 #include "apps/scene/image.h"
@@ -19,9 +23,9 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-// While a texture is built: pixels of 8 bits, texels of 16 bits in all levels, and two images of floats to shrink.
-constexpr std::size_t kPeakBytesPerPixel = 40;
-constexpr std::size_t kLastingBytesPerPixel = 11;
+// Texels of 16 bits in all levels; a picture that is in memory as a whole while it becomes a texture; and what the JPEG
+// decoder takes at most, its planes and the picture.
+constexpr std::size_t kTextureBytesPerPixel = 11, kPictureBytesPerPixel = 4, kJpegBytesPerPixel = 8;
 constexpr std::size_t kLargestImageFile = std::size_t{1} << 28;
 
 bool isPng(Bytes bytes) {
@@ -39,24 +43,33 @@ std::uint32_t bigEndian32(Bytes bytes, std::size_t at) {
          std::uint32_t{bytes[at + 2]} << 8 | bytes[at + 3];
 }
 
+using Pixel = std::array<std::uint8_t, 4>;
+
+/// The colour of a PNG file whose pixels all have the same one. Stops at the first other one.
+std::optional<Pixel> onlyColor(const std::string& name, Bytes bytes) {
+  PngRows rows(name, bytes);
+  std::vector<std::uint8_t> row(4 * static_cast<std::size_t>(rows.width()));
+  Pixel first{};
+  for (int y = 0; y < rows.height(); ++y) {
+    rows.next(row);
+    if (y == 0) std::copy_n(row.begin(), 4, first.begin());
+    for (std::size_t i = 0; i < row.size(); i += 4)
+      if (!std::equal(first.begin(), first.end(), &row[i])) return std::nullopt;
+  }
+  return first;
+}
+
 class ImageReader {
  public:
   ImageReader(GltfDocument& document, std::size_t index)
       : document_(document), image_(document.images[index]), place_(jsonPointer("images", index)) {}
 
-  Image read() {
+  std::unique_ptr<raster::Texture> read(raster::Texture::Content content, const raster::Sampler& sampler) {
     std::vector<std::uint8_t> file;
     const Bytes bytes = find(file);
-    if (isPng(bytes)) {
-      checkSize(bigEndian32(bytes, 16), bigEndian32(bytes, 20));
-      try {
-        return decodePng("the PNG file", bytes);
-      } catch (const InputError& error) {
-        document_.refuse(place_, error.what());
-      }
-    }
-    if (isJpeg(bytes)) return readJpeg(bytes);
-    document_.refuse(place_, "is neither PNG nor JPEG; convert it");
+    if (isJpeg(bytes)) return readJpeg(bytes, content, sampler);
+    if (!isPng(bytes)) document_.refuse(place_, "is neither PNG nor JPEG; convert it");
+    return readPng(bytes, content, sampler);
   }
 
  private:
@@ -86,23 +99,46 @@ class ImageReader {
       document_.refuse(place_, "has " + std::to_string(width) + " x " + std::to_string(height) +
                                    " pixels; limn takes 1 to 16384 each way");
     }
-    document_.checkRoom(width * height * kPeakBytesPerPixel, place_);
-    document_.charge(width * height * kLastingBytesPerPixel, place_);
   }
 
-  Image readJpeg(Bytes bytes) const {
+  /// Room for a texture, and while it is built for `more` bytes per pixel.
+  void chargeTexture(std::size_t width, std::size_t height, std::size_t more) const {
+    document_.checkRoom(width * height * (kTextureBytesPerPixel + more), place_);
+    document_.charge(width * height * kTextureBytesPerPixel, place_);
+  }
+
+  std::unique_ptr<raster::Texture> readPng(Bytes bytes, raster::Texture::Content content,
+                                           const raster::Sampler& sampler) const {
+    checkSize(bigEndian32(bytes, 16), bigEndian32(bytes, 20));
+    const std::string name = document_.file() + ": " + place_ + ": the PNG file";
+    PngRows rows(name, bytes);
+    const std::size_t width = static_cast<std::size_t>(rows.width()),
+                      height = static_cast<std::size_t>(rows.height());
+    const std::size_t more = rows.isInterlaced() ? kPictureBytesPerPixel : 0;
+    document_.checkRoom(width * height * more, place_);
+    // Large pictures in small files have a single colour: one texel says it.
+    if (const auto color = onlyColor(name, bytes))
+      return std::make_unique<raster::Texture>(1, 1, *color, content, sampler);
+    chargeTexture(width, height, more);
+    return std::make_unique<raster::Texture>(
+        rows.width(), rows.height(), [&rows](std::span<std::uint8_t> row) { rows.next(row); }, content,
+        sampler);
+  }
+
+  std::unique_ptr<raster::Texture> readJpeg(Bytes bytes, raster::Texture::Content content,
+                                            const raster::Sampler& sampler) const {
     int width = 0, height = 0, channels = 0;
     const bool fits = bytes.size() <= static_cast<std::size_t>(std::numeric_limits<int>::max());
     const int size = fits ? static_cast<int>(bytes.size()) : 0;
     if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) refuseJpeg();
-    checkSize(static_cast<std::size_t>(width), static_cast<std::size_t>(height));
+    const std::size_t w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
+    checkSize(w, h);
+    document_.checkRoom(w * h * kJpegBytesPerPixel, place_);
     const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
         stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4), stbi_image_free);
     if (!pixels) refuseJpeg();
-    Image image{width, height, {}};
-    image.rgba.assign(pixels.get(),
-                      pixels.get() + 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    return image;
+    chargeTexture(w, h, kPictureBytesPerPixel);
+    return std::make_unique<raster::Texture>(width, height, Bytes(pixels.get(), 4 * w * h), content, sampler);
   }
 
   [[noreturn]] void refuseJpeg() const {
@@ -155,9 +191,8 @@ const raster::Texture* TextureCache::find(int texture, raster::Texture::Content 
     if (entry.image == source.source && entry.sampler == source.sampler && entry.content == content)
       return entry.texture;
   }
-  const Image image = ImageReader(document_, static_cast<std::size_t>(source.source)).read();
-  textures_.push_back(std::make_unique<raster::Texture>(image.width, image.height, image.rgba, content,
-                                                        samplerOf(document_, source.sampler)));
+  textures_.push_back(ImageReader(document_, static_cast<std::size_t>(source.source))
+                          .read(content, samplerOf(document_, source.sampler)));
   entries_.push_back({source.source, source.sampler, content, textures_.back().get()});
   return entries_.back().texture;
 }

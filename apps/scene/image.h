@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -42,8 +43,25 @@ std::vector<std::uint8_t> encodePng16(const Image16& image, const TextChunks& te
 /// (apps/scene/load.h) naming the file: not a PNG, damaged, or larger than 16384 pixels.
 Image readPng(const std::string& path, TextChunks* texts = nullptr);
 
-/// The same from the bytes of a file; `name` is what messages call it.
-Image decodePng(const std::string& name, std::span<const std::uint8_t> bytes);
+/// Decodes a PNG row by row, so that the picture is never in memory as a whole unless it is interlaced. Errors as
+/// readPng, where they are met; `name` is what messages call the file. Borrows `bytes`.
+class PngRows {
+ public:
+  PngRows(const std::string& name, std::span<const std::uint8_t> bytes);
+  ~PngRows();
+  PngRows(const PngRows&) = delete;
+  PngRows& operator=(const PngRows&) = delete;
+
+  int width() const;
+  int height() const;
+  bool isInterlaced() const;
+  /// The next row from the top, RGBA8, 4 · width bytes; at most height() times.
+  void next(std::span<std::uint8_t> row);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 /// The same as readPng, converted to RGBA with 16 bits per sample (8-bit samples times 257). `is16` says what the file
 /// has.

@@ -18,12 +18,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestFile = std::size_t{1} << 40;
 
-Scene loadStandardInput(const LoadOptions& options) {
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
-  return loadGltf("standard input", std::move(bytes), std::nullopt, options);
+ModelFile readStandardInput() {
+  return {"standard input",
+          {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()},
+          std::nullopt};
 }
 
-Scene loadFile(const std::string& name, const LoadOptions& options) {
+ModelFile readNamed(const std::string& name) {
   const fs::path path(name);
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -34,16 +35,29 @@ Scene loadFile(const std::string& name, const LoadOptions& options) {
   if (!fs::is_regular_file(status)) throw InputError(name + ": is not a file; name a .gltf or .glb file");
   std::optional<std::vector<std::uint8_t>> bytes = readFileBytes(path, kLargestFile);
   if (!bytes) throw InputError(name + ": cannot be read; may you read it?");
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  return loadGltf(name, std::move(*bytes), folder, options);
+  return {name, std::move(*bytes), path.has_parent_path() ? path.parent_path() : fs::path(".")};
+}
+
+/// What `model` names beyond "builtin:", if it does.
+std::optional<std::string> builtinName(const std::string& model) {
+  const std::string prefix = "builtin:";
+  if (!model.starts_with(prefix)) return std::nullopt;
+  return model.substr(prefix.size());
 }
 
 }  // namespace
 
 Scene load(const std::string& model, const LoadOptions& options) {
-  const std::string prefix = "builtin:";
-  if (model.starts_with(prefix)) return makeBuiltin(model.substr(prefix.size()));
-  return model == "-" ? loadStandardInput(options) : loadFile(model, options);
+  if (const auto name = builtinName(model)) return makeBuiltin(*name);
+  ModelFile file = model == "-" ? readStandardInput() : readNamed(model);
+  return loadGltf(file.name, std::move(file.bytes), file.folder, options);
+}
+
+Source openSource(const std::string& model, const LoadOptions& options) {
+  if (const auto name = builtinName(model)) return {{model, {}, std::nullopt}, makeBuiltin(*name)};
+  ModelFile file = model == "-" ? readStandardInput() : readNamed(model);
+  Scene scene = loadGltf(file.name, file.bytes, file.folder, options);
+  return {std::move(file), std::move(scene)};
 }
 
 }  // namespace limn::scene

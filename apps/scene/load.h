@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -23,6 +26,23 @@ struct LoadOptions {
 /// Loads MODEL as the command line names it: a .gltf or .glb file, "-" (GLB on standard input) or "builtin:NAME".
 /// Throws InputError; an unknown built-in name is answered with the nearest known one.
 Scene load(const std::string& model, const LoadOptions& options = {});
+
+/// The bytes of a model's file; built-in models have none.
+struct ModelFile {
+  std::string name;  ///< what messages call it
+  std::vector<std::uint8_t> bytes;
+  std::optional<std::filesystem::path>
+      folder;  ///< where the files lie that it refers to; none for standard input
+};
+
+/// A scene, and the file that it came from for those who write parts of it again.
+struct Source {
+  ModelFile file;
+  Scene scene;
+};
+
+/// As load().
+Source openSource(const std::string& model, const LoadOptions& options = {});
 
 struct BuiltinModel {
   std::string name;  ///< after "builtin:"

@@ -2,6 +2,7 @@
 #include <libdeflate.h>
 #include <png.h>
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstring>
 #include <fstream>
@@ -10,6 +11,7 @@
 
 #include "apps/scene/image.h"
 #include "apps/scene/load.h"
+#include "raster/base/check.h"
 
 namespace limn::scene {
 namespace {
@@ -91,6 +93,14 @@ bool readRows(PngReader& reader, png_bytepp rows) {
   return true;
 }
 
+/// One row of a picture that is not interlaced, and after the last one the rest of the file.
+bool readRow(PngReader& reader, png_bytep row, bool isLast) {
+  if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
+  png_read_row(reader.png, row, nullptr);
+  if (isLast) png_read_end(reader.png, reader.info);
+  return true;
+}
+
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {
   throw InputError(path + ": " + what + "; give a whole PNG file of at most 16384x16384 pixels");
 }
@@ -101,26 +111,31 @@ std::vector<std::uint8_t> fileOrRefused(const std::string& path) {
   return file;
 }
 
+/// Up to the pixels; asks for RGBA with `bits` per sample.
+void open(const std::string& path, std::span<const std::uint8_t> file, int bits, PngReader& reader,
+          int& width, int& height, int& bitDepth) {
+  if (file.size() < sizeof kSignature || std::memcmp(file.data(), kSignature, sizeof kSignature) != 0)
+    refuse(path, "is not a PNG file");
+  reader.rest = file;
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, onError, onWarning);
+  if (reader.png != nullptr) reader.info = png_create_info_struct(reader.png);
+  if (reader.info == nullptr) throw std::bad_alloc();
+  if (!readHeader(reader, bits, width, height, bitDepth)) refuse(path, "is damaged (" + reader.message + ")");
+  // Before memory is taken: so few bytes cannot hold so many pixels (1 bit each at the least).
+  if (file.size() * kLargestExpansion <
+      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) / 8)
+    refuse(path, "is damaged (too short for its size)");
+}
+
 /// Decodes into rows of RGBA with `bits` per sample. `allocate(width, height)` returns the place for all of
 /// them.
 template <class Allocate>
 void decode(const std::string& path, std::span<const std::uint8_t> file, int bits, int& bitDepth,
             TextChunks* texts, const Allocate& allocate) {
-  if (file.size() < sizeof kSignature || std::memcmp(file.data(), kSignature, sizeof kSignature) != 0)
-    refuse(path, "is not a PNG file");
   PngReader reader;
-  reader.rest = file;
-  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, onError, onWarning);
-  if (reader.png != nullptr) reader.info = png_create_info_struct(reader.png);
-  if (reader.info == nullptr) throw std::bad_alloc();
-
   int width = 0, height = 0;
-  if (!readHeader(reader, bits, width, height, bitDepth)) refuse(path, "is damaged (" + reader.message + ")");
+  open(path, file, bits, reader, width, height, bitDepth);
   const std::size_t stride = png_get_rowbytes(reader.png, reader.info);
-  // Before memory is taken: so few bytes cannot hold so many pixels (1 bit each at the least).
-  if (file.size() * kLargestExpansion <
-      static_cast<std::size_t>(width) * static_cast<std::size_t>(height) / 8)
-    refuse(path, "is damaged (too short for its size)");
   png_bytep pixels = allocate(width, height);
   std::vector<png_bytep> rows(static_cast<std::size_t>(height));
   for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = pixels + y * stride;
@@ -153,12 +168,10 @@ void collectText(std::string_view type, std::string_view data, TextChunks& texts
 
 }  // namespace
 
-namespace {
-
-Image decode8(const std::string& name, std::span<const std::uint8_t> bytes, TextChunks* texts) {
+Image readPng(const std::string& path, TextChunks* texts) {
   Image image;
   int bitDepth = 0;
-  decode(name, bytes, 8, bitDepth, texts, [&](int width, int height) {
+  decode(path, fileOrRefused(path), 8, bitDepth, texts, [&](int width, int height) {
     image.width = width;
     image.height = height;
     image.rgba.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -167,14 +180,54 @@ Image decode8(const std::string& name, std::span<const std::uint8_t> bytes, Text
   return image;
 }
 
-}  // namespace
+struct PngRows::State {
+  std::string name;
+  PngReader reader;
+  int width = 0, height = 0, row = 0;
+  bool isInterlaced = false;
+  std::vector<std::uint8_t> whole;  ///< of an interlaced picture, whose rows come in no order
 
-Image readPng(const std::string& path, TextChunks* texts) {
-  return decode8(path, fileOrRefused(path), texts);
+  void readWhole() {
+    const std::size_t stride = 4 * static_cast<std::size_t>(width);
+    whole.resize(stride * static_cast<std::size_t>(height));
+    std::vector<png_bytep> rows(static_cast<std::size_t>(height));
+    for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = whole.data() + y * stride;
+    if (!readRows(reader, rows.data())) refuse(name, "is damaged (" + reader.message + ")");
+  }
+};
+
+PngRows::PngRows(const std::string& name, std::span<const std::uint8_t> bytes)
+    : state_(std::make_unique<State>()) {
+  state_->name = name;
+  int bitDepth = 0;
+  open(name, bytes, 8, state_->reader, state_->width, state_->height, bitDepth);
+  state_->isInterlaced =
+      png_get_interlace_type(state_->reader.png, state_->reader.info) != PNG_INTERLACE_NONE;
+}
+PngRows::~PngRows() = default;
+
+int PngRows::width() const {
+  return state_->width;
+}
+int PngRows::height() const {
+  return state_->height;
+}
+bool PngRows::isInterlaced() const {
+  return state_->isInterlaced;
 }
 
-Image decodePng(const std::string& name, std::span<const std::uint8_t> bytes) {
-  return decode8(name, bytes, nullptr);
+void PngRows::next(std::span<std::uint8_t> row) {
+  State& s = *state_;
+  require(s.row < s.height && row.size() == 4 * static_cast<std::size_t>(s.width), "no such row");
+  const int y = s.row++;
+  if (!s.isInterlaced) {
+    if (!readRow(s.reader, row.data(), s.row == s.height))
+      refuse(s.name, "is damaged (" + s.reader.message + ")");
+    return;
+  }
+  if (y == 0) s.readWhole();
+  const std::uint8_t* from = &s.whole[static_cast<std::size_t>(y) * row.size()];
+  std::copy(from, from + row.size(), row.begin());
 }
 
 Image16 readPng16(const std::string& path, bool* is16) {

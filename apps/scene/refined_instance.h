@@ -17,6 +17,7 @@ struct RefinedInstance {
   const silhouette::RefinedStream* stream = nullptr;
   std::span<const glm::vec2> texcoords;  ///< of the stream's vertices, as far as the mesh has them
   std::span<const glm::vec4> colors;
+  std::span<const glm::vec4> meshTangents, tangents;  ///< of the shape's vertices and of the stream's
   glm::dmat4 shapeToWorld{1.0};
 };
 

@@ -58,7 +58,7 @@ struct Glb {
 
 const Bytes& smallFile() {
   static const Bytes file = [] {
-    const Source source = openSource("builtin:torus:60:30");
+    const scene::Source source = scene::openSource("builtin:torus:60:30");
     Workers workers(2);
     return withMeshes(source, {coarsenMesh(source.scene.meshes[0], {200}, workers)});
   }();
@@ -77,7 +77,7 @@ void expectIgnored(const Bytes& file, const char* what) {
 }
 
 TEST(SmallFile, GivesMeshAndCurvesBack) {
-  const Source source = openSource("builtin:torus:60:30");
+  const scene::Source source = scene::openSource("builtin:torus:60:30");
   Workers workers(2);
   const scene::Mesh mesh = coarsenMesh(source.scene.meshes[0], {200}, workers);
   const scene::Scene scene = loaded(withMeshes(source, {mesh}));

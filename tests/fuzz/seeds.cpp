@@ -1,10 +1,12 @@
-// Writes small glTF files that use every part of the loader: what the fuzzer starts from.
+// Writes what the fuzzers start from: small glTF files that use every part of the loader, and small meshes drawn by every
+// method.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "apps/scene/image.h"
+#include "apps/scene/stored_curves.h"
 #include "tests/scene/gltf_writer.h"
 
 namespace {
@@ -85,6 +87,61 @@ GltfWriter textured() {
   return w;
 }
 
+/// A triangle with fitted curves: two ends per edge, one centre.
+GltfWriter fitted() {
+  GltfWriter w;
+  w.addTriangle();
+  limn::scene::StoredCurves curves;
+  curves.ends.assign(6, {10, -20, 30});
+  curves.centers.assign(1, {0, 0, 60});
+  curves.endScale = curves.centerScale = glm::vec3(0.25f);
+  const std::vector<glm::vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  std::vector<std::int8_t> ends;
+  for (const auto& end : curves.ends) ends.insert(ends.end(), end.begin(), end.end());
+  const json scale = {0.25, 0.25, 0.25};
+  w.root["meshes"][0]["extensions"]["LIMN_fitted_curves"] = {
+      {"ends", w.addArray(ends, "VEC3", true)},
+      {"endScale", scale},
+      {"centers", w.addArray<std::int8_t>({0, 0, 60}, "VEC3", true)},
+      {"centerScale", scale},
+      {"key", limn::scene::curvesKey(curves, corners)}};
+  w.root["extensionsUsed"] = {"LIMN_fitted_curves"};
+  return w;
+}
+
+/// A mesh for the frame target (frame_input.h): the first two bytes, then a closed or open one of whole coordinates.
+std::vector<std::uint8_t> frame(int first, int second, const std::vector<std::int8_t>& coordinates,
+                                const std::vector<std::uint8_t>& indices) {
+  const auto byte = [](std::size_t value) { return static_cast<std::uint8_t>(value); };
+  const std::size_t vertices = coordinates.size() / 3;
+  std::vector<std::uint8_t> bytes = {byte(static_cast<std::size_t>(first)),
+                                     byte(static_cast<std::size_t>(second)),
+                                     0,
+                                     8,
+                                     8,
+                                     30,
+                                     20,
+                                     0,
+                                     0,
+                                     byte(vertices - 3),
+                                     byte(indices.size() / 3 - 1)};
+  for (const std::int8_t c : coordinates) {
+    bytes.push_back(static_cast<std::uint8_t>(c));
+    bytes.push_back(c < 0 ? 255 : 0);
+  }
+  if ((second & 4) != 0)
+    for (const std::int8_t c : coordinates) bytes.push_back(static_cast<std::uint8_t>(c));  // as on a sphere
+  if ((second & 8) != 0) bytes.insert(bytes.end(), 4 * vertices, 40);
+  bytes.insert(bytes.end(), indices.begin(), indices.end());
+  return bytes;
+}
+
+const std::vector<std::int8_t> kOctahedron = {90, 0, 0, -90, 0, 0, 0, 90, 0, 0, -90, 0, 0, 0, 90, 0, 0, -90};
+const std::vector<std::uint8_t> kOctahedronFaces = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4,
+                                                    2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+const std::vector<std::int8_t> kFold = {0, 0, 0, 60, 0, 0, 60, 60, 10, 0, 60, 0, 30, 30, 50, 0, 0, 0};
+const std::vector<std::uint8_t> kFoldFaces = {0, 1, 2, 0, 2, 3, 5, 2, 4, 4, 4, 1};
+
 bool write(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes) {
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
@@ -98,16 +155,25 @@ int main(int argc, char** argv) {
     std::fputs("usage: limn_fuzz_seeds FOLDER\n", stderr);
     return 2;
   }
-  const std::filesystem::path folder = argv[1];
+  const std::filesystem::path folder = std::filesystem::path(argv[1]) / "loader";
+  const std::filesystem::path frames = std::filesystem::path(argv[1]) / "frame";
   std::filesystem::create_directories(folder);
+  std::filesystem::create_directories(frames);
   const std::string embedded =
       R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],)"
       R"("bufferViews":[{"buffer":0,"byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
       R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"nodes":[{"mesh":0}]})";
-  const bool written =
+  bool written =
       write(folder / "indexed.glb", indexed().glb()) && write(folder / "sparse.glb", sparse().glb()) &&
       write(folder / "skinned.glb", skinned().glb()) && write(folder / "textured.glb", textured().glb()) &&
+      write(folder / "fitted.glb", fitted().glb()) &&
       write(folder / "embedded.gltf", {embedded.begin(), embedded.end()});
+  for (int method = 0; method < 4; ++method) {
+    const std::string name = std::to_string(method);
+    written = written &&
+              write(frames / ("closed-" + name), frame(method | 24, 2 | 4, kOctahedron, kOctahedronFaces)) &&
+              write(frames / ("open-" + name), frame(method | 36, 8 | 16 | 64 | 128, kFold, kFoldFaces));
+  }
   if (!written) std::fputs("limn_fuzz_seeds: could not write the seeds\n", stderr);
   return written ? 0 : 4;
 }

@@ -1,14 +1,18 @@
 // limn refine: the file is sound glTF, holds what is drawn, and limn draws it to the same picture.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "apps/scene/image.h"
 #include "tests/program/run_program.h"
+#include "tests/scene/gltf_writer.h"
 
 namespace {
 
+namespace scene = limn::scene;
 using limn::test::operator+;
 using limn::test::ProgramTest;
 using limn::test::Result;
@@ -56,7 +60,7 @@ TEST_F(Refine, HoldsSoundTrianglesWithUnitNormals) {
     const json& primitive = glb.document["meshes"][0]["primitives"][0];
     const auto positions = glb.values<float>(primitive["attributes"]["POSITION"], 3);
     const auto normals = glb.values<float>(primitive["attributes"]["NORMAL"], 3);
-    const auto indices = glb.values<std::uint32_t>(primitive["indices"], 1);
+    const auto indices = glb.values<std::uint16_t>(primitive["indices"], 1);
     ASSERT_EQ(positions.size(), normals.size());
     for (std::size_t i = 0; i < normals.size(); i += 3)
       ASSERT_NEAR(std::hypot(normals[i], normals[i + 1], normals[i + 2]), 1.0, 1e-6);
@@ -105,6 +109,53 @@ TEST_F(Refine, AlphasAreThoseOfTheCoarseEdges) {
   }
   EXPECT_GT(smooth, 20U);
   EXPECT_GT(flat, 20U);
+}
+
+/// Two triangles, folded, with a picture on them that lies in a file beside the model.
+scene::test::GltfWriter textured() {
+  scene::test::GltfWriter writer;
+  const json attributes = {
+      {"POSITION", writer.addArray<float>({-1, -1, 0, 1, -1, 0, 1, 1, 0.5f, -1, 1, 0}, "VEC3")},
+      {"NORMAL",
+       writer.addArray<float>({-0.6f, -0.6f, 1, 0.6f, -0.6f, 1, 0.6f, 0.6f, 1, -0.6f, 0.6f, 1}, "VEC3")},
+      {"TANGENT", writer.addArray<float>({1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1}, "VEC4")},
+      {"TEXCOORD_1", writer.addArray<float>({0, 1, 1, 1, 1, 0, 0, 0}, "VEC2")}};
+  writer.addMesh(attributes, writer.addArray<std::uint16_t>({0, 1, 2, 0, 2, 3}, "SCALAR"))["material"] = 1;
+  writer.root["images"] = {{{"uri", "four.png"}}};
+  writer.root["samplers"] = {{{"magFilter", 9728}}};
+  writer.root["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  const json unused = json::object();
+  const json transform = {{"KHR_texture_transform", {{"scale", {2, 3}}}}};
+  writer.root["materials"] = {
+      unused,
+      {{"pbrMetallicRoughness",
+        {{"baseColorTexture", {{"index", 0}, {"texCoord", 1}, {"extensions", transform}}},
+         {"roughnessFactor", 0.3}}},
+       {"normalTexture", {{"index", 0}, {"texCoord", 1}, {"extensions", transform}}},
+       {"doubleSided", true}}};
+  writer.root["extensionsUsed"] = {"KHR_texture_transform"};
+  return writer;
+}
+
+TEST_F(Refine, KeepsTexturesAndMaterials) {
+  const scene::Image four{2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 90, 90, 255, 255, 255, 255, 0, 255}};
+  const auto png = scene::encodePng(four, {}, 1);
+  write("four.png", std::string(png.begin(), png.end()));
+  const auto glb = textured().glb();
+  write("fold.glb", std::string(glb.begin(), glb.end()));
+  const Words view = {"--eye", "1,2,4", "--target", "0,0,0", "--size", "120x120", "--method", "flat"};
+  ASSERT_EQ(limn(Words{"refine", "fold.glb", "-o", "deep/r.glb"} + view).status, 0);
+  const json document = Glb(contents("deep/r.glb")).document;
+  EXPECT_EQ(document["materials"], textured().root["materials"]);
+  EXPECT_EQ(document["extensionsUsed"], json::array({"KHR_texture_transform"}));
+  EXPECT_EQ(document["images"][0]["mimeType"], "image/png");
+  // Flat triangles lose nothing on the way, so the pictures are the same to the last bit.
+  ASSERT_EQ(limn(Words{"render", "fold.glb", "-o", "a.png"} + view).status, 0);
+  ASSERT_EQ(limn(Words{"render", "deep/r.glb", "-o", "b.png"} + view).status, 0);
+  const Result compared = limn({"compare", "a.png", "b.png"});
+  EXPECT_EQ(compared.status, 0) << compared.out;
+  const scene::Image drawn = scene::readPng(path("a.png"));
+  EXPECT_TRUE(std::any_of(drawn.rgba.begin(), drawn.rgba.end(), [](std::uint8_t v) { return v > 0; }));
 }
 
 TEST_F(Refine, RefusesWhatCannotBe) {

@@ -40,7 +40,7 @@ void redirect(const fs::path& file, int flags, int descriptor) {
 
 Running::Running(const fs::path& directory, const std::vector<std::string>& arguments,
                  const std::string& input, unsigned long fileSizeLimit)
-    : streams_(newDirectory()) {
+    : streams_(newDirectory()), start_(std::chrono::steady_clock::now()) {
   std::ofstream(streams_ / "in", std::ios::binary) << input;
   std::vector<const char*> words = {LIMN_PROGRAM};
   for (const std::string& argument : arguments) words.push_back(argument.c_str());
@@ -75,9 +75,12 @@ void Running::signal(int number) const {
 
 Result Running::wait() {
   int status = 0;
-  ::waitpid(process_, &status, 0);
+  rusage usage{};
+  ::wait4(process_, &status, 0, &usage);
   process_ = -1;
   Result result;
+  result.peakBytes = static_cast<std::size_t>(usage.ru_maxrss) << 10;
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   result.out = readAll(streams_ / "out");
   result.err = readAll(streams_ / "err");

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <sys/types.h>
 
+#include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,6 +14,8 @@ namespace limn::test {
 
 struct Result {
   int status = -1;  ///< exit status, or -n when ended by signal n
+  std::size_t peakBytes = 0;
+  double seconds = 0;
   std::string out, err;
 };
 
@@ -31,6 +35,7 @@ class Running {
  private:
   std::filesystem::path streams_;
   pid_t process_ = -1;
+  std::chrono::steady_clock::time_point start_;
 };
 
 class ProgramTest : public testing::Test {
