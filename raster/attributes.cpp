@@ -108,7 +108,7 @@ const Attributes& attributesOf(Tile& tile, Record& record) {
 
   std::array<int, 3> order;
   const Corners corners = tile.cornersOf(record, order);
-  Attributes result;
+  Attributes result{};
   result.handedness = batch.mirrored ? -vertex[0].tangent.w : vertex[0].tangent.w;
   result.isBackFace = (order[1] == 1) != batch.mirrored;
   const bool cut = isLoose && loose->cut;
@@ -116,7 +116,11 @@ const Attributes& attributesOf(Tile& tile, Record& record) {
   const PlaneBasis basis(cut ? loose->anchors : corners);
   const auto a = static_cast<std::size_t>(order[0]), b = static_cast<std::size_t>(order[1]),
              c = static_cast<std::size_t>(order[2]);
-  for (std::size_t i = 0; i < Attributes::kCount; ++i) {
+  // Texture coordinates first; colours and tangents where anything reads them.
+  const std::size_t count = material.normalTexture != nullptr                  ? Attributes::kCount
+                            : tile.surfaceOf(ref.batch, ref.cluster).hasColors ? Attributes::kTangentX
+                                                                               : Attributes::kRed;
+  for (std::size_t i = 0; i < count; ++i) {
     const float va = corner[a][i] * q[a], vb = corner[b][i] * q[b], vc = corner[c][i] * q[c];
     const Slopes s = basis.slopes(va, vb, vc);
     result.origin[i] = va, result.slopeX[i] = s.x, result.slopeY[i] = s.y;

@@ -47,118 +47,119 @@ HWY_INLINE VF wrappedVector(VF u, Wrap wrap) {
   return hn::IfThenElse(hn::Gt(period, one), hn::Sub(two, period), period);
 }
 
-struct TapsVector {
-  VI first, second;
+/// A table's number for each lane's level.
+template <class D>
+HWY_INLINE hn::Vec<D> lookUp(D d, const std::array<hn::TFromD<D>, kMaxLevels>& table, VI level) {
+  if constexpr (kLanes == kMaxLevels)
+    return hn::TableLookupLanes(hn::Load(d, table.data()), hn::IndicesFromVec(d, level));
+  else
+    return hn::GatherIndex(d, table.data(), level);
+}
+
+struct TapVector {
+  VI texel;
   VF share;
 };
 
-/// linearTaps() and nearestTap() of texel.h. Whatever a lane holds, its taps are within the level.
-HWY_INLINE TapsVector tapsOf(VF wrappedU, std::int32_t size, Wrap wrap, bool linear) {
+/// tapOf() of texel.h. Whatever a lane holds, its texel is within the level and its border.
+HWY_INLINE TapVector tapsOf(VF wrappedU, VF size, VI last, MF linear) {
   const I d;
   const F f;
-  const VI zero = hn::Zero(d), last = hn::Set(d, size - 1);
-  const VF scaled = hn::Mul(wrappedU, hn::Set(f, static_cast<float>(size)));
-  const auto within = [&](VI i) { return hn::Min(hn::Max(i, zero), last); };
-  if (!linear) {
-    const VI i = within(hn::ConvertTo(d, scaled));
-    return {i, i, hn::Zero(f)};
-  }
-  const VF x = hn::Sub(scaled, hn::Set(f, 0.5F)), base = hn::Floor(x);
-  const VI i = hn::ConvertTo(d, base), next = hn::Add(i, hn::Set(d, 1));
-  const bool around = wrap == Wrap::kRepeat;
-  const VI first = hn::IfThenElse(hn::Lt(i, zero), around ? last : zero, i);
-  const VI second = hn::IfThenElse(hn::Gt(next, last), around ? zero : last, next);
-  return {within(first), within(second), hn::Sub(x, base)};
+  const VF scaled = hn::Mul(wrappedU, size);
+  const VF x = hn::IfThenElse(linear, hn::Sub(scaled, hn::Set(f, 0.5F)), scaled), base = hn::Floor(x);
+  const VI texel = hn::Min(hn::Max(hn::ConvertTo(d, base), hn::Set(d, -1)), last);
+  return {texel, hn::IfThenElseZero(linear, hn::Sub(x, base))};
 }
 
-/// Texels, from memory in a loop: that is faster than gathers.
-HWY_INLINE Color fetch(const Texture::Data& t, VI texel) {
-  const I d;
-  const F f;
-  alignas(64) std::int32_t index[kLanes], redGreen[kLanes], blue[kLanes];
-  hn::Store(texel, d, index);
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    const std::uint16_t* rgba = &t.texels[4 * static_cast<std::size_t>(index[i])];
-    redGreen[i] = static_cast<std::int32_t>(rgba[0] | static_cast<std::uint32_t>(rgba[1]) << 16U);
-    blue[i] = rgba[2];
+/// A texel and its right neighbour for each lane, two channels of 16 bits in each number.
+struct TexelPairs {
+  VI redGreen, blueAlpha, nextRedGreen, nextBlueAlpha;
+};
+
+/// The texel and its right neighbour of the lanes 0, 4, 8 … side by side.
+template <class D>
+HWY_INLINE hn::Vec<D> loadEveryFourth(D d, const std::uint16_t* texels, const std::int32_t* at) {
+  if constexpr (hn::MaxLanes(D()) == 4) {
+    return hn::LoadU(d, reinterpret_cast<const std::int32_t*>(texels + 4 * static_cast<std::ptrdiff_t>(*at)));
+  } else {
+    const hn::Half<D> half;
+    const std::int32_t* upper = at + hn::MaxLanes(half);
+    return hn::Combine(d, loadEveryFourth(half, texels, upper), loadEveryFourth(half, texels, at));
   }
-  const VI two = hn::Load(d, redGreen), low = hn::Set(d, 0xffff);
-  return {hn::ConvertTo(f, hn::And(two, low)), hn::ConvertTo(f, hn::And(hn::ShiftRight<16>(two), low)),
-          hn::ConvertTo(f, hn::Load(d, blue))};
 }
 
-/// sampleLevel() of texel.h.
-HWY_INLINE Color sampleLevelVector(const Texture::Data& t, VF u, VF v, std::int32_t level, bool linear) {
+/// One load of 128 bits for each lane; four lanes at a time are turned into numbers of their own.
+HWY_INLINE TexelPairs fetchPairs(const std::uint16_t* texels, const std::int32_t* at) {
+  const I d;
+  const VI r0 = loadEveryFourth(d, texels, at), r1 = loadEveryFourth(d, texels, at + 1);
+  const VI r2 = loadEveryFourth(d, texels, at + 2), r3 = loadEveryFourth(d, texels, at + 3);
+  const VI low02 = hn::InterleaveLower(d, r0, r2), low13 = hn::InterleaveLower(d, r1, r3);
+  const VI high02 = hn::InterleaveUpper(d, r0, r2), high13 = hn::InterleaveUpper(d, r1, r3);
+  return {hn::InterleaveLower(d, low02, low13), hn::InterleaveUpper(d, low02, low13),
+          hn::InterleaveLower(d, high02, high13), hn::InterleaveUpper(d, high02, high13)};
+}
+
+/// Between a texel and the next, of one row.
+HWY_INLINE Color alongRow(const TexelPairs& p, VF share) {
   const I d;
   const F f;
-  const TextureLevel& l = t.levels[static_cast<std::size_t>(level)];
-  const TapsVector x = tapsOf(wrappedVector(u, t.sampler.wrapU), l.width, t.sampler.wrapU, linear);
-  const TapsVector y = tapsOf(wrappedVector(v, t.sampler.wrapV), l.height, t.sampler.wrapV, linear);
-  const VI origin = hn::Set(d, static_cast<std::int32_t>(l.first)), width = hn::Set(d, l.width);
-  const VI upperRow = hn::Add(origin, hn::Mul(y.first, width));
-  const VI lowerRow = hn::Add(origin, hn::Mul(y.second, width));
-  const Color a = fetch(t, hn::Add(upperRow, x.first)), b = fetch(t, hn::Add(upperRow, x.second));
-  const Color c = fetch(t, hn::Add(lowerRow, x.first)), e = fetch(t, hn::Add(lowerRow, x.second));
-  const auto mixed = [&](VF from, VF to, VF share) {
-    return hn::Add(from, hn::Mul(hn::Sub(to, from), share));
+  const VI mask = hn::Set(d, 0xffff);
+  const auto low = [&](VI two) { return hn::ConvertTo(f, hn::And(two, mask)); };
+  const auto high = [&](VI two) { return hn::ConvertTo(f, hn::And(hn::ShiftRight<16>(two), mask)); };
+  const auto mixed = [&](VF from, VF to) { return hn::Add(from, hn::Mul(hn::Sub(to, from), share)); };
+  return {mixed(low(p.redGreen), low(p.nextRedGreen)), mixed(high(p.redGreen), high(p.nextRedGreen)),
+          mixed(low(p.blueAlpha), low(p.nextBlueAlpha))};
+}
+
+/// sampleLevel() of texel.h, each lane in its own level, `linear` or not.
+HWY_INLINE Color sampleLevelVector(const Texture::Data& t, const FootprintVector& p, VI level, MF linear) {
+  const I d;
+  const F f;
+  const LevelTables& l = t.tables;
+  const TapVector x = tapsOf(wrappedVector(p.u, t.sampler.wrapU), lookUp(f, l.width, level),
+                             lookUp(d, l.lastColumn, level), linear);
+  const TapVector y = tapsOf(wrappedVector(p.v, t.sampler.wrapV), lookUp(f, l.height, level),
+                             lookUp(d, l.lastRow, level), linear);
+  const VI stride = lookUp(d, l.stride, level);
+  const VI upper = hn::Add(hn::Add(lookUp(d, l.origin, level), hn::Mul(y.texel, stride)), x.texel);
+  alignas(64) std::int32_t upperAt[kLanes], lowerAt[kLanes];
+  hn::Store(upper, d, upperAt);
+  hn::Store(hn::Add(upper, stride), d, lowerAt);
+  const Color a = alongRow(fetchPairs(t.texels.data(), upperAt), x.share);
+  const Color b = alongRow(fetchPairs(t.texels.data(), lowerAt), x.share);
+  const auto channel = [&](VF from, VF to) {
+    return hn::Mul(hn::Add(from, hn::Mul(hn::Sub(to, from), y.share)), hn::Set(f, 1.0F / 65535.0F));
   };
-  const auto channel = [&](VF fa, VF fb, VF fc, VF fe) {
-    const VF upper = mixed(fa, fb, x.share), lower = mixed(fc, fe, x.share);
-    return hn::Mul(mixed(upper, lower, y.share), hn::Set(f, 1.0F / 65535.0F));
-  };
-  return {channel(a.r, b.r, c.r, e.r), channel(a.g, b.g, c.g, e.g), channel(a.b, b.b, c.b, e.b)};
-}
-
-/// The lanes of `wanted`, each from its own level: mostly one or two are at hand.
-HWY_INLINE void sampleLevels(const Texture::Data& t, const FootprintVector& p, VI levels, bool linear,
-                             MI wanted, Color& color) {
-  const I d;
-  alignas(64) std::int32_t level[kLanes];
-  hn::Store(levels, d, level);
-  while (!hn::AllFalse(d, wanted)) {
-    const std::int32_t one = level[static_cast<std::size_t>(hn::FindFirstTrue(d, wanted))];
-    const MI same = hn::And(wanted, hn::Eq(levels, hn::Set(d, one)));
-    wanted = hn::AndNot(same, wanted);
-    const Color c = sampleLevelVector(t, p.u, p.v, one, linear);
-    const MF where = hn::RebindMask(F(), same);
-    color.r = hn::IfThenElse(where, c.r, color.r);
-    color.g = hn::IfThenElse(where, c.g, color.g);
-    color.b = hn::IfThenElse(where, c.b, color.b);
-  }
+  return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
 }
 
 /// sample() of texel.h.
 HWY_INLINE Color sampleVector(const Texture::Data& t, const FootprintVector& p) {
   const I d;
   const F f;
-  const VF lambda = levelOfVector(t, p), zero = hn::Zero(f);
+  const VF lambda = levelOfVector(t, p);
   const VI last = hn::Set(d, static_cast<std::int32_t>(t.levels.size()) - 1);
-  const MI smaller = hn::RebindMask(d, hn::Gt(lambda, zero));
+  const MF smaller = hn::Gt(lambda, hn::Zero(f));
   const Filter filter = t.sampler.minification;
   const bool nearestMip = filter == Filter::kNearestMipNearest || filter == Filter::kLinearMipNearest;
   const bool oneLevel = filter == Filter::kNearest || filter == Filter::kLinear;
-  const bool linear =
+  const bool minifiesLinearly =
       filter == Filter::kLinear || filter == Filter::kLinearMipNearest || filter == Filter::kLinearMipLinear;
+  const MF all = hn::FirstN(f, kLanes), none = hn::Not(all);
+  const MF linear =
+      hn::Or(minifiesLinearly ? smaller : none, t.sampler.linearMagnification ? hn::Not(smaller) : none);
 
   const VF rounded = nearestMip ? hn::Add(lambda, hn::Set(f, 0.5F)) : lambda;
   const VI chosen = oneLevel ? hn::Zero(d) : hn::Min(hn::ConvertTo(d, rounded), last);
-  const VI level = hn::IfThenElseZero(smaller, hn::Max(chosen, hn::Zero(d)));
-  Color color{zero, zero, zero};
-  if (linear == t.sampler.linearMagnification) {
-    sampleLevels(t, p, level, linear, hn::FirstN(d, kLanes), color);
-  } else {
-    sampleLevels(t, p, level, linear, smaller, color);
-    sampleLevels(t, p, level, !linear, hn::Not(smaller), color);
-  }
+  const VI level = hn::IfThenElseZero(hn::RebindMask(d, smaller), hn::Max(chosen, hn::Zero(d)));
+  Color color = sampleLevelVector(t, p, level, linear);
   if (oneLevel || nearestMip) return color;
-  const MI between = hn::And(smaller, hn::Lt(level, last));
-  if (hn::AllFalse(d, between)) return color;
-  Color coarse = color;
-  sampleLevels(t, p, hn::Add(level, hn::Set(d, 1)), linear, between, coarse);
+  const MF between = hn::And(smaller, hn::RebindMask(f, hn::Lt(level, last)));
+  if (hn::AllFalse(f, between)) return color;
+  const Color coarse = sampleLevelVector(t, p, hn::Min(hn::Add(level, hn::Set(d, 1)), last), linear);
   const VF share = hn::Sub(lambda, hn::ConvertTo(f, level));
-  const MF where = hn::RebindMask(f, between);
   const auto mix = [&](VF& fine, VF other) {
-    fine = hn::IfThenElse(where, hn::Add(fine, hn::Mul(hn::Sub(other, fine), share)), fine);
+    fine = hn::IfThenElse(between, hn::Add(fine, hn::Mul(hn::Sub(other, fine), share)), fine);
   };
   mix(color.r, coarse.r);
   mix(color.g, coarse.g);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -17,17 +18,43 @@
 
 namespace limn::raster {
 
-/// One mip level within Texture::Data::texels.
+/// One mip level. It has a border one texel wide that holds what wrapping finds there, so that whatever lies within the
+/// level, the four texels around it lie side by side.
 struct TextureLevel {
-  std::int32_t width, height;
-  std::size_t first;  ///< texel; below 2^29
+  std::int32_t width, height;  ///< without the border
+  std::int32_t first;          ///< of the border's upper left texel in Texture::Data::texels; below 2^29
+
+  std::int32_t stride() const { return width + 2; }
+  std::int32_t texelCount() const { return stride() * (height + 2); }
+  /// Of the texel in a column from -1 to width and a row from -1 to height.
+  std::int32_t texel(std::int32_t column, std::int32_t row) const {
+    return first + (row + 1) * stride() + (column + 1);
+  }
+};
+
+inline constexpr std::size_t kMaxLevels = 16;
+
+/// Numbers of all levels side by side, for kernels that look them up.
+struct LevelTables {
+  alignas(64) std::array<float, kMaxLevels> width{}, height{};
+  alignas(64) std::array<std::int32_t, kMaxLevels> lastColumn{}, lastRow{}, stride{},
+      origin{};  ///< texel (0, 0)
 };
 
 struct Texture::Data {
   Sampler sampler;
   std::vector<TextureLevel> levels;
+  LevelTables tables;
   std::vector<std::uint16_t> texels;  ///< RGBA, linear light, 65535 = 1
   bool transparent = false;
+
+  /// The four channels of a texel; column and row as in TextureLevel::texel().
+  const std::uint16_t* at(const TextureLevel& level, std::int32_t column, std::int32_t row) const {
+    return &texels[4 * static_cast<std::size_t>(level.texel(column, row))];
+  }
+  std::uint16_t* at(const TextureLevel& level, std::int32_t column, std::int32_t row) {
+    return &texels[4 * static_cast<std::size_t>(level.texel(column, row))];
+  }
 };
 
 /// log2 of a positive normal float.
@@ -60,43 +87,29 @@ inline float wrapped(float u, Wrap wrap) {
   return period > 1.0F ? 2.0F - period : period;
 }
 
-/// The texel before and after a coordinate, and how far between them it lies.
-struct Taps {
-  std::int32_t first, second;
+/// The texel before a coordinate, and how far from it towards the next one it lies.
+struct Tap {
+  std::int32_t texel;  ///< -1 … size - 1
   float share;
 };
 
-inline Taps linearTaps(float wrappedU, std::int32_t size, Wrap wrap) {
-  const float x = wrappedU * static_cast<float>(size) - 0.5F, base = std::floor(x);
-  const auto i = static_cast<std::int32_t>(base);
-  const bool around = wrap == Wrap::kRepeat;
-  const std::int32_t first = i < 0 ? (around ? size - 1 : 0) : i;
-  const std::int32_t second = i + 1 >= size ? (around ? 0 : size - 1) : i + 1;
-  return {std::min(first, size - 1), second, x - base};
+inline Tap tapOf(float wrappedU, std::int32_t size, bool linear) {
+  const float scaled = wrappedU * static_cast<float>(size), x = linear ? scaled - 0.5F : scaled;
+  const float base = std::floor(x);
+  return {std::min(static_cast<std::int32_t>(base), size - 1), linear ? x - base : 0.0F};
 }
 
-inline Taps nearestTap(float wrappedU, std::int32_t size) {
-  const auto i = std::min(static_cast<std::int32_t>(wrappedU * static_cast<float>(size)), size - 1);
-  return {i, i, 0.0F};
-}
-
-/// One level: ((a + (b - a)·x) and the row below, then between the rows.
+/// One level: (a + (b - a)·x) and the row below, then between the rows.
 inline glm::vec4 sampleLevel(const Texture::Data& t, float u, float v, std::int32_t level, bool linear) {
   const TextureLevel& l = t.levels[static_cast<std::size_t>(level)];
-  const float wu = wrapped(u, t.sampler.wrapU), wv = wrapped(v, t.sampler.wrapV);
-  const Taps x = linear ? linearTaps(wu, l.width, t.sampler.wrapU) : nearestTap(wu, l.width);
-  const Taps y = linear ? linearTaps(wv, l.height, t.sampler.wrapV) : nearestTap(wv, l.height);
-  const auto texel = [&](std::int32_t i, std::int32_t j) {
-    return &t.texels[4 * (l.first + static_cast<std::size_t>(j) * static_cast<std::size_t>(l.width) +
-                          static_cast<std::size_t>(i))];
-  };
-  const std::uint16_t *a = texel(x.first, y.first), *b = texel(x.second, y.first);
-  const std::uint16_t *c = texel(x.first, y.second), *d = texel(x.second, y.second);
+  const Tap x = tapOf(wrapped(u, t.sampler.wrapU), l.width, linear);
+  const Tap y = tapOf(wrapped(v, t.sampler.wrapV), l.height, linear);
+  const std::uint16_t *upperRow = t.at(l, x.texel, y.texel), *lowerRow = t.at(l, x.texel, y.texel + 1);
   glm::vec4 result;
   for (int i = 0; i < 4; ++i) {
-    const auto fa = static_cast<float>(a[i]), fb = static_cast<float>(b[i]);
-    const auto fc = static_cast<float>(c[i]), fd = static_cast<float>(d[i]);
-    const float upper = fa + (fb - fa) * x.share, lower = fc + (fd - fc) * x.share;
+    const auto a = static_cast<float>(upperRow[i]), b = static_cast<float>(upperRow[4 + i]);
+    const auto c = static_cast<float>(lowerRow[i]), d = static_cast<float>(lowerRow[4 + i]);
+    const float upper = a + (b - a) * x.share, lower = c + (d - c) * x.share;
     result[i] = (upper + (lower - upper) * y.share) * (1.0F / 65535.0F);
   }
   return result;

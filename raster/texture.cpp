@@ -51,35 +51,51 @@ void addNarrowed(const std::uint16_t* row, std::int32_t from, std::int32_t to, f
   }
 }
 
-// Each texel of the next level is the mean of those under it, by area, whatever the size; row after row, so that
-// nothing but the texels themselves takes memory.
-void appendLevel(Texture::Data& d) {
-  const TextureLevel from = d.levels.back();
-  const TextureLevel to{std::max(1, from.width / 2), std::max(1, from.height / 2), d.texels.size() / 4};
+// Where the levels of a picture are, all of them or the first, and room for their texels.
+void layOut(Texture::Data& d, std::int32_t width, std::int32_t height, bool mips) {
+  for (std::int32_t first = 0;; width = std::max(1, width / 2), height = std::max(1, height / 2)) {
+    const TextureLevel level{width, height, first};
+    const std::size_t i = d.levels.size();
+    d.tables.width[i] = static_cast<float>(width), d.tables.height[i] = static_cast<float>(height);
+    d.tables.lastColumn[i] = width - 1, d.tables.lastRow[i] = height - 1;
+    d.tables.stride[i] = level.stride(), d.tables.origin[i] = level.texel(0, 0);
+    d.levels.push_back(level);
+    first += level.texelCount();
+    if (!mips || (width == 1 && height == 1)) break;
+  }
+  d.texels.resize(4 * static_cast<std::size_t>(d.levels.back().first + d.levels.back().texelCount()));
+}
+
+// Each texel of a level is the mean of those under it in the one before, by area, whatever the size; row after row, so
+// that nothing but the texels themselves takes memory.
+void fillLevel(Texture::Data& d, const TextureLevel& from, const TextureLevel& to) {
   const float area = static_cast<float>(from.width) / static_cast<float>(to.width) *
                      (static_cast<float>(from.height) / static_cast<float>(to.height));
   std::vector<float> sum(4 * static_cast<std::size_t>(to.width));
   for (std::int32_t y = 0; y < to.height; ++y) {
     std::fill(sum.begin(), sum.end(), 0.0F);
     const Span under(y, from.height, to.height);
-    for (std::int32_t k = under.first; k < from.height && under.holds(k); ++k) {
-      const std::size_t row = from.first + static_cast<std::size_t>(k) * static_cast<std::size_t>(from.width);
-      addNarrowed(&d.texels[4 * row], from.width, to.width, under.partOf(k), sum.data());
-    }
-    for (const float v : sum)
-      d.texels.push_back(static_cast<std::uint16_t>(std::min(v / area + 0.5F, 65535.0F)));
+    for (std::int32_t k = under.first; k < from.height && under.holds(k); ++k)
+      addNarrowed(d.at(from, 0, k), from.width, to.width, under.partOf(k), sum.data());
+    std::transform(sum.begin(), sum.end(), d.at(to, 0, y), [area](float v) {
+      return static_cast<std::uint16_t>(std::min(v / area + 0.5F, 65535.0F));
+    });
   }
-  d.levels.push_back(to);
 }
 
-std::size_t texelsOfAllLevels(std::size_t width, std::size_t height) {
-  std::size_t texels = width * height;
-  while (width > 1 || height > 1) {
-    width = std::max<std::size_t>(1, width / 2);
-    height = std::max<std::size_t>(1, height / 2);
-    texels += width * height;
+// Fills the border of a level whose texels are there.
+void fillBorder(Texture::Data& d, const TextureLevel& l) {
+  const auto copy = [&](std::int32_t toColumn, std::int32_t toRow, std::int32_t column, std::int32_t row,
+                        std::int32_t count) {
+    std::copy_n(d.at(l, column, row), 4 * count, d.at(l, toColumn, toRow));
+  };
+  const bool aroundU = d.sampler.wrapU == Wrap::kRepeat, aroundV = d.sampler.wrapV == Wrap::kRepeat;
+  for (std::int32_t y = 0; y < l.height; ++y) {
+    copy(-1, y, aroundU ? l.width - 1 : 0, y, 1);
+    copy(l.width, y, aroundU ? 0 : l.width - 1, y, 1);
   }
-  return texels;
+  copy(-1, -1, -1, aroundV ? l.height - 1 : 0, l.stride());
+  copy(-1, l.height, -1, aroundV ? 0 : l.height - 1, l.stride());
 }
 
 bool usesMips(Filter filter) {
@@ -94,21 +110,20 @@ Texture::Texture(int width, int height, const std::function<void(std::span<std::
   data_ = std::make_unique<Data>();
   Data& d = *data_;
   d.sampler = sampler;
-  d.levels.push_back({width, height, 0});
-  const std::size_t w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
-  const bool mips = usesMips(sampler.minification);
-  d.texels.reserve(4 * (mips ? texelsOfAllLevels(w, h) : w * h));
+  layOut(d, width, height, usesMips(sampler.minification));
   const DecodeTable color = decodeTable(content), alpha = decodeTable(Content::kLinear);
-  std::vector<std::uint8_t> row(4 * w);
+  std::vector<std::uint8_t> row(4 * static_cast<std::size_t>(width));
   for (int y = 0; y < height; ++y) {
     nextRow(row);
+    std::uint16_t* texels = d.at(d.levels[0], 0, y);
     for (std::size_t i = 0; i < row.size(); ++i) {
       const bool isAlpha = i % 4 == 3;
-      d.texels.push_back((isAlpha ? alpha : color)[row[i]]);
+      texels[i] = (isAlpha ? alpha : color)[row[i]];
       d.transparent |= isAlpha && row[i] < 255;
     }
   }
-  while (mips && (d.levels.back().width > 1 || d.levels.back().height > 1)) appendLevel(d);
+  for (std::size_t i = 1; i < d.levels.size(); ++i) fillLevel(d, d.levels[i - 1], d.levels[i]);
+  for (const TextureLevel& level : d.levels) fillBorder(d, level);
 }
 
 namespace {

@@ -103,8 +103,9 @@ class ImageReader {
 
   /// Room for a texture, and while it is built for `more` bytes per pixel.
   void chargeTexture(std::size_t width, std::size_t height, std::size_t more) const {
-    document_.checkRoom(width * height * (kTextureBytesPerPixel + more), place_);
-    document_.charge(width * height * kTextureBytesPerPixel, place_);
+    const std::size_t bytes = (width + 4) * (height + 4) * kTextureBytesPerPixel;  // levels have borders
+    document_.checkRoom(bytes + width * height * more, place_);
+    document_.charge(bytes, place_);
   }
 
   std::unique_ptr<raster::Texture> readPng(Bytes bytes, raster::Texture::Content content,
