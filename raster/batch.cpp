@@ -54,33 +54,48 @@ void setTransform(const glm::mat4& modelToView, bool perspective, Batch& batch) 
   batch.conesHold = std::isfinite(batch.eye.x) && std::isfinite(batch.eye.y) && std::isfinite(batch.eye.z);
 }
 
-const glm::vec3& positionOf(const Draw& draw, std::uint32_t vertex) {
-  const auto count = draw.geometry->vertexCount();
-  if (vertex >= count) return draw.stream.vertices.positions[vertex - count];
-  return draw.posedPositions.empty() ? draw.geometry->data().positions[vertex] : draw.posedPositions[vertex];
-}
+// The vertices of a draw, as they are this frame: the geometry's, then the stream's.
+class DrawnVertices {
+ public:
+  explicit DrawnVertices(const Draw& draw)
+      : count_(draw.geometry->vertexCount()),
+        positions_(draw.posedPositions.empty() ? draw.geometry->data().positions.data()
+                                               : draw.posedPositions.data()),
+        normals_(draw.posedNormals.empty() ? draw.geometry->data().normals.data() : draw.posedNormals.data()),
+        stream_(draw.stream.vertices) {}
 
-const glm::vec3& normalOf(const Draw& draw, std::uint32_t vertex) {
-  const auto count = draw.geometry->vertexCount();
-  if (vertex >= count) return draw.stream.vertices.normals[vertex - count];
-  return draw.posedNormals.empty() ? draw.geometry->data().normals[vertex] : draw.posedNormals[vertex];
-}
+  /// The points of a set's vertices [begin, end).
+  void copy(const ClusterSet& set, std::size_t begin, std::size_t end, ClusterVertices& points) const {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t v = set.vertices[i];
+      if (v < count_)
+        points.set(i, positions_[v], normals_[v]);
+      else
+        points.set(i, stream_.positions[v - count_], stream_.normals[v - count_]);
+    }
+  }
 
-// Clusters of the stream's triangles [first, last).
-void cutStream(const Draw& draw, std::size_t first, std::size_t last, ClusterSet& set) {
+ private:
+  std::size_t count_;
+  const glm::vec3 *positions_, *normals_;
+  const Vertices& stream_;
+};
+
+// Clusters of the stream's triangles [first, last). They have no cones: to find those costs more than to cull the
+// triangles that face away.
+void cutStream(const Draw& draw, std::size_t first, std::size_t last, VertexNumbers& numbers,
+               ClusterSet& set) {
   const Geometry::Data& geometry = draw.geometry->data();
-  ClusterCutter cutter(set);
+  ClusterCutter cutter(set, last - first, numbers);
   for (std::size_t t = first; t < last; ++t) {
     const std::uint32_t source = draw.stream.sourceTriangles[t];
     const std::uint32_t part = geometry.partOfTriangle.empty() ? 0 : geometry.partOfTriangle[source];
     cutter.add(&draw.stream.indices[3 * t], static_cast<std::uint32_t>(t), geometry.parts[part].material);
   }
-  cutter.finish();
   set.points.resize(set.vertices.size());
-  for (std::size_t i = 0; i < set.vertices.size(); ++i)
-    set.points.set(i, positionOf(draw, set.vertices[i]), normalOf(draw, set.vertices[i]));
+  DrawnVertices(draw).copy(set, 0, set.vertices.size(), set.points);
   set.bounds.clear();
-  for (const Cluster& cluster : set.clusters) set.bounds.push_back(boundTriangles(set, cluster));
+  for (const Cluster& cluster : set.clusters) set.bounds.push_back(boundPoints(cluster, set.points));
 }
 
 }  // namespace
@@ -92,19 +107,48 @@ std::uint64_t Batch::order(std::uint32_t triangleOfSet) const {
   return (static_cast<std::uint64_t>(drawIndex) << 32) | within;
 }
 
+bool Batch::isReplaced(const Cluster& cluster) const {
+  if (isStream || draw->replaced.empty()) return false;
+  // The triangles of a geometry's clusters are in the order of submission.
+  const std::uint32_t first = set->triangles[cluster.firstTriangle], last = first + cluster.triangleCount;
+  for (std::uint32_t t = first; t < last; t = (t / 64 + 1) * 64) {
+    const std::uint64_t from = ~std::uint64_t{0} << (t % 64);
+    const std::uint64_t to = last - t / 64 * 64 >= 64 ? 0 : ~std::uint64_t{0} << (last % 64);
+    if ((~draw->replaced[t / 64] & from & ~to) != 0) return false;
+  }
+  return true;
+}
+
 void BatchBuilder::pose(const Draw& draw, Posed& posed, Workers& workers) const {
   const ClusterSet& set = draw.geometry->data().set;
   posed.points.resize(set.vertices.size());
   posed.bounds.resize(set.clusters.size());
   workers.forBlocks(set.vertices.size(), kPoseGrain, [&](std::size_t begin, std::size_t end, int) {
-    for (std::size_t i = begin; i < end; ++i)
-      posed.points.set(i, positionOf(draw, set.vertices[i]), normalOf(draw, set.vertices[i]));
+    DrawnVertices(draw).copy(set, begin, end, posed.points);
   });
   workers.forBlocks(set.clusters.size(), kPoseGrain / kClusterVertices,
                     [&](std::size_t begin, std::size_t end, int) {
                       for (std::size_t i = begin; i < end; ++i)
                         posed.bounds[i] = boundPoints(set.clusters[i], posed.points);
                     });
+}
+
+void BatchBuilder::cutStreams(const Frame& frame, Workers& workers) {
+  std::size_t vertices = 0;
+  for (const Draw& draw : frame.draws)
+    if (!draw.stream.indices.empty())
+      vertices = std::max(vertices, draw.geometry->vertexCount() + draw.stream.vertices.positions.size());
+  numbers_.resize(static_cast<std::size_t>(workers.threads()));
+  for (VertexNumbers& numbers : numbers_) numbers.reserve(vertices);
+  workers.forBlocks(batches_.size(), 1, [&](std::size_t begin, std::size_t, int slot) {
+    Batch& batch = batches_[begin];
+    if (!batch.isStream) return;
+    const std::size_t count = batch.draw->stream.sourceTriangles.size();
+    ClusterSet& set = *sets_[batch.streamSet];
+    cutStream(*batch.draw, batch.firstTriangle, std::min(count, batch.firstTriangle + kStreamPiece),
+              numbers_[static_cast<std::size_t>(slot)], set);
+    batch.points = &set.points, batch.bounds = set.bounds.data();
+  });
 }
 
 std::span<const Batch> BatchBuilder::build(const Frame& frame, const ScreenMap& map, Workers& workers) {
@@ -136,14 +180,7 @@ std::span<const Batch> BatchBuilder::build(const Frame& frame, const ScreenMap& 
       batches_.push_back(batch);
     }
   }
-  workers.forBlocks(batches_.size(), 1, [&](std::size_t begin, std::size_t, int) {
-    Batch& batch = batches_[begin];
-    if (!batch.isStream) return;
-    const std::size_t count = batch.draw->stream.sourceTriangles.size();
-    ClusterSet& set = *sets_[batch.streamSet];
-    cutStream(*batch.draw, batch.firstTriangle, std::min(count, batch.firstTriangle + kStreamPiece), set);
-    batch.points = &set.points, batch.bounds = set.bounds.data();
-  });
+  cutStreams(frame, workers);
   clusterCount_ = 0;
   for (Batch& batch : batches_) {
     batch.firstCluster = clusterCount_;
@@ -157,6 +194,7 @@ std::size_t BatchBuilder::memoryBytes() const {
   for (const auto& p : posed_)
     bytes += p->points.memoryBytes() + p->bounds.capacity() * sizeof(ClusterBounds);
   for (const auto& s : sets_) bytes += s->memoryBytes();
+  for (const VertexNumbers& n : numbers_) bytes += n.memoryBytes();
   return bytes;
 }
 

@@ -36,6 +36,8 @@ struct Batch {
     const std::uint32_t t = set->triangles[triangleOfSet];
     return isStream ? draw->stream.sourceTriangles[t] : t;
   }
+  /// All of a cluster's triangles are replaced.
+  bool isReplaced(const Cluster& cluster) const;
   bool isReplaced(std::uint32_t triangleOfSet) const {
     if (isStream || draw->replaced.empty()) return false;
     const std::uint32_t t = set->triangles[triangleOfSet];
@@ -58,10 +60,12 @@ class BatchBuilder {
     std::vector<ClusterBounds> bounds;
   };
   void pose(const Draw& draw, Posed& posed, Workers& workers) const;
+  void cutStreams(const Frame& frame, Workers& workers);
 
   std::vector<Batch> batches_;
   std::vector<std::unique_ptr<Posed>> posed_;      // one per posed draw
   std::vector<std::unique_ptr<ClusterSet>> sets_;  // one per piece of a stream
+  std::vector<VertexNumbers> numbers_;             // one per thread
   std::size_t clusterCount_ = 0;
 };
 

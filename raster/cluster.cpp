@@ -46,50 +46,49 @@ bool ClusterSet::isConsistent() const {
   return nextVertex == vertices.size() && nextTriangle == triangles.size();
 }
 
-ClusterCutter::ClusterCutter(ClusterSet& set) : set_(set) {
+void VertexNumbers::beginCluster() {
+  if (++cluster_ < kClusters) return;
+  std::fill(words_.begin(), words_.end(), 0);
+  cluster_ = 1;
+}
+
+ClusterCutter::ClusterCutter(ClusterSet& set, std::size_t triangles, VertexNumbers& numbers)
+    : set_(set), numbers_(numbers) {
   set.clusters.clear();
   set.vertices.clear();
-  set.triangles.clear();
-  for (auto& corner : set.corners) corner.clear();
+  set.triangles.resize(triangles);
+  for (auto& corner : set.corners) corner.resize(triangles + kPadding);
 }
 
-ClusterCutter::Slot& ClusterCutter::slotOf(std::uint32_t vertex) {
-  std::uint32_t i = (vertex * 2654435769U) >> 24;
-  while (holds(slots_[i]) && slots_[i].vertex != vertex) i = (i + 1) % kSlots;
-  return slots_[i];
-}
-
-bool ClusterCutter::fits(const std::uint32_t* c) {
-  const Cluster& cluster = set_.clusters.back();
-  int fresh = !holds(slotOf(c[0]));
-  fresh += !holds(slotOf(c[1])) && c[1] != c[0];
-  fresh += !holds(slotOf(c[2])) && c[2] != c[0] && c[2] != c[1];
-  return cluster.triangleCount < kClusterTriangles && cluster.vertexCount + fresh <= kClusterVertices;
+// How many vertices a triangle would add to the cluster.
+int ClusterCutter::freshOf(const std::uint32_t* c) const {
+  int fresh = !numbers_.has(c[0]);
+  fresh += !numbers_.has(c[1]) && c[1] != c[0];
+  return fresh + (!numbers_.has(c[2]) && c[2] != c[0] && c[2] != c[1]);
 }
 
 void ClusterCutter::add(const std::uint32_t* corners, std::uint32_t triangle, std::uint32_t material) {
-  if (set_.clusters.empty() || set_.clusters.back().material != material || !fits(corners)) {
-    Cluster cluster;
+  std::vector<Cluster>& clusters = set_.clusters;
+  if (clusters.empty() || clusters.back().material != material ||
+      clusters.back().triangleCount == kClusterTriangles ||
+      clusters.back().vertexCount + freshOf(corners) > kClusterVertices) {
+    numbers_.beginCluster();
+    Cluster& cluster = clusters.emplace_back();
     cluster.firstVertex = static_cast<std::uint32_t>(set_.vertices.size());
-    cluster.firstTriangle = static_cast<std::uint32_t>(set_.triangles.size());
+    cluster.firstTriangle = static_cast<std::uint32_t>(next_);
     cluster.material = material;
-    set_.clusters.push_back(cluster);
   }
-  Cluster& cluster = set_.clusters.back();
+  Cluster& cluster = clusters.back();
   for (std::size_t k = 0; k < 3; ++k) {
-    Slot& slot = slotOf(corners[k]);
-    if (!holds(slot)) {
-      slot = {static_cast<std::uint32_t>(set_.clusters.size()), corners[k], cluster.vertexCount++};
-      set_.vertices.push_back(corners[k]);
+    const std::uint32_t vertex = corners[k];
+    if (!numbers_.has(vertex)) {
+      numbers_.set(vertex, cluster.vertexCount++);
+      set_.vertices.push_back(vertex);
     }
-    set_.corners[k].push_back(static_cast<std::uint8_t>(slot.local));
+    set_.corners[k][next_] = static_cast<std::uint8_t>(numbers_[vertex]);
   }
-  set_.triangles.push_back(triangle);
+  set_.triangles[next_++] = triangle;
   ++cluster.triangleCount;
-}
-
-void ClusterCutter::finish() {
-  for (auto& corner : set_.corners) corner.resize(corner.size() + kPadding);
 }
 
 ClusterBounds boundPoints(const Cluster& cluster, const ClusterVertices& v) {

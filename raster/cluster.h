@@ -59,25 +59,41 @@ struct ClusterSet {
 /// Kernels read whole vectors: arrays are this much longer than their contents.
 inline constexpr std::size_t kPadding = 64;
 
-/// Appends triangles to a ClusterSet (all but its points and bounds), a new cluster whenever one is full.
-class ClusterCutter {
+/// Where vertices are in the cluster that is being filled: a word for each vertex of the mesh, looked up, never hashed
+/// nor cleared.
+class VertexNumbers {
  public:
-  /// Empties the set; its memory stays.
-  explicit ClusterCutter(ClusterSet& set);
-  void add(const std::uint32_t* corners, std::uint32_t triangle, std::uint32_t material);
-  void finish();  ///< after the last triangle
+  /// For vertices below `count`. Memory only grows.
+  void reserve(std::size_t count) {
+    if (words_.size() < count) words_.resize(count);
+  }
+  void beginCluster();
+  bool has(std::uint32_t vertex) const { return words_[vertex] / kBase == cluster_; }
+  std::uint32_t operator[](std::uint32_t vertex) const { return words_[vertex] % kBase; }
+  void set(std::uint32_t vertex, std::uint32_t number) { words_[vertex] = cluster_ * kBase + number; }
+  std::size_t memoryBytes() const { return words_.capacity() * sizeof words_[0]; }
 
  private:
-  static constexpr std::uint32_t kSlots = 256;  // of a hash table that never holds more than kClusterVertices
-  struct Slot {
-    std::uint32_t cluster, vertex, local;
-  };
-  Slot& slotOf(std::uint32_t vertex);
-  bool holds(const Slot& slot) const { return slot.cluster == set_.clusters.size(); }
-  bool fits(const std::uint32_t* corners);
+  static constexpr std::uint32_t kBase = 256, kClusters = 1U << 24U;
+  static_assert(kClusterVertices <= kBase);
+
+  std::vector<std::uint32_t> words_;  // cluster · kBase + number in it
+  std::uint32_t cluster_ = 0;         // counts up; no vertex is in cluster 0
+};
+
+/// Fills a ClusterSet (all but its points and bounds), a new cluster whenever one is full.
+class ClusterCutter {
+ public:
+  /// Empties the set; its memory stays. `triangles` are going to be added, of vertices that `numbers` has room for.
+  ClusterCutter(ClusterSet& set, std::size_t triangles, VertexNumbers& numbers);
+  void add(const std::uint32_t* corners, std::uint32_t triangle, std::uint32_t material);
+
+ private:
+  int freshOf(const std::uint32_t* corners) const;
 
   ClusterSet& set_;
-  std::array<Slot, kSlots> slots_{};
+  VertexNumbers& numbers_;
+  std::size_t next_ = 0;  // triangle of the set
 };
 
 /// The bounding sphere of a cluster's points.

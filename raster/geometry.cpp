@@ -49,11 +49,12 @@ Geometry::Geometry(const Vertices& vertices, std::span<const std::uint32_t> indi
     for (std::uint32_t i = 0; i < parts.size(); ++i)
       d.partOfTriangle.insert(d.partOfTriangle.end(), parts[i].triangleCount, i);
 
-  ClusterCutter cutter(d.set);
+  VertexNumbers numbers;
+  numbers.reserve(d.positions.size());
+  ClusterCutter cutter(d.set, d.triangleCount, numbers);
   for (const Part& part : parts)
     for (std::uint32_t t = part.firstTriangle; t < part.firstTriangle + part.triangleCount; ++t)
       cutter.add(&indices[3UL * t], t, part.material);
-  cutter.finish();
   d.set.points.resize(d.set.vertices.size());
   for (std::size_t i = 0; i < d.set.vertices.size(); ++i)
     d.set.points.set(i, d.positions[d.set.vertices[i]], d.normals[d.set.vertices[i]]);
