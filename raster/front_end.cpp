@@ -113,11 +113,10 @@ void FrontEnd::cull(const Frame& frame, std::span<const Batch> batches, const Sc
     const auto b = static_cast<std::uint32_t>(batch - batches.begin());
     const Cluster& cluster = batch->set->clusters[c];
     const ClusterBounds& bounds = batch->bounds[c];
-    range.trianglesIn += cluster.triangleCount;
     const bool cones = batch->conesHold && !frame.materials[cluster.material].doubleSided;
     if (cones && bounds.coneSine < 1.0F && facesAway(bounds, *batch, map.perspective)) continue;
     const Fate fate = classify(bounds, *batch, map);
-    if (fate == Fate::kHidden) continue;
+    if (fate == Fate::kHidden || batch->isReplaced(cluster)) continue;
     const bool blended = frame.materials[cluster.material].alphaMode == AlphaMode::kBlend;
     if (fate == Fate::kClip || blended) {
       drawLoosely(*batch, b, c, blended, map, range);
@@ -157,7 +156,6 @@ void FrontEnd::run(const Frame& frame, std::span<const Batch> batches, std::size
     range.begin = clusterCount * r / kRanges;
     range.end = clusterCount * (r + 1) / kRanges;
     range.visible = 0;
-    range.trianglesIn = 0;
     range.loose.clear();
     range.blended.clear();
     if (range.begin < range.end) cull(frame, batches, map, tiling, kernels, r);
@@ -168,8 +166,6 @@ void FrontEnd::run(const Frame& frame, std::span<const Batch> batches, std::size
     for (std::size_t i = range.begin; i < range.begin + range.visible; ++i)
       clusterBins_.place(r, visible_[i].tiles, static_cast<std::uint32_t>(i));
   });
-  trianglesIn_ = 0;
-  for (const Range& range : ranges_) trianglesIn_ += range.trianglesIn;
   placeLoose(tiling, workers);
   sortBlended(tiling, workers);
 }

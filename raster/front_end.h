@@ -68,7 +68,6 @@ class FrontEnd {
   const Bins& clusterBins() const { return clusterBins_; }
   const Bins& looseBins() const { return looseBins_; }
   const Bins& blendedBins() const { return blendedBins_; }  ///< loose triangles, far to near
-  std::uint64_t trianglesIn() const { return trianglesIn_; }
   std::size_t memoryBytes() const;
 
  private:
@@ -85,7 +84,6 @@ class FrontEnd {
     std::size_t begin = 0, end = 0, visible = 0, firstLoose = 0;
     std::vector<LooseTriangle> loose;
     std::vector<BlendKey> blended;  ///< which of `loose` are blended
-    std::uint64_t trianglesIn = 0;
   };
   void cull(const Frame& frame, std::span<const Batch> batches, const ScreenMap& map, const Tiling& tiling,
             const Kernels& kernels, std::size_t r);
@@ -99,7 +97,6 @@ class FrontEnd {
   std::vector<LooseTriangle> loose_;
   std::vector<BlendKey> blended_;
   Bins clusterBins_, looseBins_, blendedBins_;
-  std::uint64_t trianglesIn_ = 0;
 };
 
 }  // namespace limn::raster

@@ -1,4 +1,5 @@
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <vector>
@@ -88,6 +89,19 @@ void requireValidStreams(const Frame& frame, Workers& workers) {
   }
 }
 
+std::uint64_t submittedTriangles(const Frame& frame) {
+  std::uint64_t count = 0;
+  for (const Draw& draw : frame.draws) {
+    const std::size_t triangles = draw.geometry->triangleCount();
+    count += triangles + draw.stream.sourceTriangles.size();
+    if (draw.replaced.empty()) continue;
+    for (std::size_t word = 0; word < triangles / 64; ++word) count -= std::popcount(draw.replaced[word]);
+    if (triangles % 64 != 0)
+      count -= std::popcount(draw.replaced[triangles / 64] & ~(~std::uint64_t{0} << (triangles % 64)));
+  }
+  return count;
+}
+
 }  // namespace
 
 struct Renderer::State {
@@ -143,12 +157,13 @@ void Renderer::draw(const Frame& frame, const Target& target, Statistics* statis
     tile.statistics.visibilityMs += visibilityMs;
     tile.statistics.shadingMs += msSince(begin) - visibilityMs;
   });
+  Tile::levelMemory(s.tiles);
 
   if (statistics == nullptr) return;
   *statistics = {};
   statistics->transformMs = transformMs;
   statistics->binningMs = binningMs;
-  statistics->trianglesIn = s.front.trianglesIn();
+  statistics->trianglesIn = submittedTriangles(frame);
   statistics->scratchBytes = s.batches.memoryBytes() + s.front.memoryBytes() + s.lines.memoryBytes();
   for (const Tile& tile : s.tiles) {
     statistics->trianglesDrawn += tile.statistics.trianglesDrawn;

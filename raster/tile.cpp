@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "raster/base/scratch.h"
+
 namespace limn::raster {
 
 void Tile::begin(const FrameContext& c, std::size_t index) {
@@ -89,6 +91,13 @@ std::uint64_t Tile::orderOf(const Record& record) const {
   const TriangleRef ref = refOf(record);
   const Batch& batch = context->batches[ref.batch];
   return batch.order(batch.set->clusters[ref.cluster].firstTriangle + ref.triangle);
+}
+
+void Tile::levelMemory(std::vector<Tile>& tiles) {
+  levelCapacity(tiles, &Tile::depth, &Tile::ids, &Tile::centerDepth, &Tile::records, &Tile::corners,
+                &Tile::attributes, &Tile::surfaces, &Tile::blocks, &Tile::colors, &Tile::isBlended);
+  for (std::size_t k = 0; k < 3; ++k)
+    levelCapacity(tiles, [k](Tile& tile) -> std::vector<float>& { return tile.normal[k]; });
 }
 
 std::size_t Tile::memoryBytes() const {

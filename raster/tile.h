@@ -103,8 +103,8 @@ class Tile {
   }
   /// Makes room for so many more.
   void reserveRecords(std::size_t count) {
-    if (records.size() < recordCount + count) records.resize(2 * (recordCount + count));
-    if (keepsCorners() && corners.size() < records.size()) corners.resize(records.size());
+    grow(records, recordCount + count);
+    if (keepsCorners()) grow(corners, recordCount + count);
   }
   bool keepsCorners() const { return context->samples.size() > 1; }
   /// Interpolates what shading needs of a record at the centre of a pixel that it has won a sample of.
@@ -119,6 +119,8 @@ class Tile {
   std::uint64_t orderOf(const Record& record) const;
   Surface surfaceOf(std::uint32_t batch, std::uint32_t cluster) const;
   std::size_t memoryBytes() const;
+  /// Between frames: gives all threads' tiles as much memory as any of them has.
+  static void levelMemory(std::vector<Tile>& tiles);
 
   const FrameContext* context = nullptr;
   int left = 0, top = 0;           ///< of the tile in the window, pixels
@@ -146,6 +148,15 @@ class Tile {
     std::int32_t low, high;
   } sampleRange{};  ///< least and largest coordinate of the samples within a pixel
   Statistics statistics;
+
+ private:
+  // To at least `count` elements, and to all that there is room for.
+  template <class T>
+  static void grow(std::vector<T>& vector, std::size_t count) {
+    if (vector.size() >= count) return;
+    if (vector.capacity() < count) vector.reserve(2 * count);
+    vector.resize(vector.capacity());
+  }
 };
 
 /// Planes of texture coordinates, colours and tangents of a record; made when first asked for.

@@ -16,6 +16,7 @@
 #include <numeric>
 
 #include "raster/base/check.h"
+#include "raster/base/scratch.h"
 #include "silhouette/edge_clusters.h"
 #include "silhouette/edge_curves.h"
 #include "silhouette/method.h"
@@ -413,6 +414,12 @@ class BlendedPatches final : public MethodState {
               PixelBound(view),
               StreamWriter(mesh_, parameters.shadingNormals, stream)};
     pass.run();
+  }
+
+  void levelScratch() override {
+    levelCapacity(scratch_, &Scratch::blockCounts, &Scratch::masks, &Scratch::alphas, &Scratch::smooth,
+                  &Scratch::recordOf, &Scratch::candidates, &Scratch::firstCut, &Scratch::cuts,
+                  &Scratch::shares);
   }
 
   void silhouetteness(const View& view, const Parameters& parameters, std::vector<float>& alphas) override {

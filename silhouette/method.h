@@ -59,6 +59,8 @@ class MethodState {
   /// slot of its own.
   virtual void refine(const View& view, const Parameters& parameters, const Crew& crew, RefinedStream& stream,
                       RefineReport& report) = 0;
+  /// Between frames: gives the scratch memory of all slots the size of the largest.
+  virtual void levelScratch() {}
   /// α of every edge; `alphas` has their number and holds zeros.
   virtual void silhouetteness(const View&, const Parameters&, std::vector<float>&) {}
 };

@@ -45,6 +45,7 @@ struct Refiner::State {
   Source source;
   Workers* workers = nullptr;
   std::array<std::unique_ptr<MethodState>, kMethods.size()> methods;  // made when first wanted
+  std::size_t tasks = 0;                                              // of the refineAll() that runs
 
   MethodState& methodOf(const Parameters& parameters) {
     requireValid(parameters, *source.topology);
@@ -116,15 +117,20 @@ void refineAll(std::span<RefineTask> tasks, const Parameters& parameters, Worker
     require(task.refiner->state_->workers == &workers, "the refiners' workers do the work");
     requireValid(task.view);
     task.refiner->state_->methodOf(parameters).prepare(parameters, Crew(workers));
+    task.refiner->state_->tasks = 0;
   }
+  for (const RefineTask& task : tasks) ++task.refiner->state_->tasks;
   for (RefineTask& task : tasks)
     if (Refiner::State& state = *task.refiner->state_; state.isLarge())
       state.refine(task.view, parameters, Crew(workers), *task.stream, task.report);
   workers.forBlocks(tasks.size(), 1, [&](std::size_t begin, std::size_t end, int slot) {
     for (std::size_t k = begin; k < end; ++k)
       if (Refiner::State& state = *tasks[k].refiner->state_; !state.isLarge())
-        state.refine(tasks[k].view, parameters, Crew(slot), *tasks[k].stream, tasks[k].report);
+        state.refine(tasks[k].view, parameters, Crew(state.tasks == 1 ? 0 : slot), *tasks[k].stream,
+                     tasks[k].report);
   });
+  for (const RefineTask& task : tasks)
+    if (task.refiner->state_->tasks > 1) task.refiner->state_->methodOf(parameters).levelScratch();
 }
 
 }  // namespace limn::silhouette

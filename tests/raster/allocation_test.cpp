@@ -3,8 +3,10 @@
 
 #include <atomic>
 #include <cstdlib>
+#include <memory>
 #include <new>
 
+#include "raster/texture.h"
 #include "tests/raster/fixture.h"
 
 namespace {
@@ -39,35 +41,68 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
 namespace limn::raster::test {
 namespace {
 
-TEST(Allocation, NoneInASteadyFrame) {
-  Soup soup;
-  for (int i = 0; i < 500; ++i) {
-    const auto x = static_cast<float>(i % 25) * 10.0F - 120.0F, y = static_cast<float>(i / 25) * 8.0F - 80.0F;
-    soup.triangle({x, y, -5.0F}, {x + 12.0F, y, -6.0F}, {x, y + 12.0F, -7.0F});
-  }
-  const Geometry geometry = soup.geometry();
-  Scene scene(pixelProjection(256, 160));
-  const std::vector<std::uint64_t> replaced(8, 0x0f0fU);
-  std::vector<std::uint32_t> streamIndices, sources;
-  for (std::uint32_t t = 0; t < 500; ++t)
-    if (((replaced[t / 64] >> (t % 64)) & 1U) != 0) {
-      sources.push_back(t);
-      for (std::uint32_t k = 0; k < 3; ++k) streamIndices.push_back(soup.indices[3 * t + k]);
+// A frame whose tiles differ in what they need: triangles from one corner to the other ever more of them.
+class UnevenFrame {
+ public:
+  explicit UnevenFrame(bool textured) : scene_(pixelProjection(512, 300)), picture_(512, 300) {
+    for (int i = 0; i < 3000; ++i) {
+      const float at = static_cast<float>(i) / 3000.0F, x = at * at * 480.0F - 240.0F,
+                  y = at * 280.0F - 140.0F;
+      soup_.triangle({x, y, -5.0F}, {x + 12.0F, y, -6.0F}, {x, y + 12.0F, -7.0F});
     }
-  scene.draws[0].geometry = &geometry;
-  scene.draws[0].replaced = replaced;
-  scene.draws[0].stream.indices = streamIndices;
-  scene.draws[0].stream.sourceTriangles = sources;
-  scene.frame.draws = scene.draws;
-  scene.frame.materials = scene.materials;
-  scene.frame.lights = scene.lights;
-  Picture picture(256, 160);
-  Renderer renderer(2);
-  Statistics statistics;
-  for (int i = 0; i < 30; ++i) renderer.draw(scene.frame, picture.target(), &statistics);
-  const std::uint64_t before = allocations;
-  for (int i = 0; i < 10; ++i) renderer.draw(scene.frame, picture.target(), &statistics);
-  EXPECT_EQ(allocations - before, 0U);
+    const std::vector<glm::vec2> texcoords(soup_.positions.size(), glm::vec2(0.5F));
+    Vertices vertices;
+    vertices.positions = soup_.positions, vertices.normals = soup_.normals, vertices.texcoords = texcoords;
+    const Part part{0, 3000, 0};
+    geometry_ = std::make_unique<Geometry>(vertices, soup_.indices, std::span(&part, 1));
+    for (std::uint32_t t = 0; t < 3000; ++t)
+      if (((replaced_[t / 64] >> (t % 64)) & 1U) != 0) {
+        sources_.push_back(t);
+        for (std::uint32_t k = 0; k < 3; ++k) indices_.push_back(soup_.indices[3 * t + k]);
+      }
+    Draw& draw = scene_.draws[0];
+    draw.geometry = geometry_.get();
+    draw.replaced = replaced_;
+    draw.stream.indices = indices_;
+    draw.stream.sourceTriangles = sources_;
+    if (textured) scene_.materials[0].baseColorTexture = &texture_;
+    lines_.points = linePoints_, lines_.colors = lineColors_;
+    scene_.frame.lines = std::span(&lines_, 1);
+    scene_.frame.draws = scene_.draws;
+    scene_.frame.materials = scene_.materials;
+    scene_.frame.lights = scene_.lights;
+  }
+
+  void draw(Renderer& renderer, int samples) {
+    scene_.frame.samples = samples;
+    renderer.draw(scene_.frame, picture_.target(), &statistics_);
+  }
+
+ private:
+  Scene scene_;
+  Picture picture_;
+  Statistics statistics_;
+  Soup soup_;
+  std::unique_ptr<Geometry> geometry_;
+  const std::vector<std::uint64_t> replaced_ = std::vector<std::uint64_t>(47, 0x0f0fU);
+  std::vector<std::uint32_t> indices_, sources_;
+  const std::vector<glm::vec3> linePoints_{{-200, -100, -1}, {200, 120, -1}};
+  const std::vector<glm::vec4> lineColors_{{1, 1, 1, 1}};
+  Lines lines_;
+  Texture texture_{1, 1, std::vector<std::uint8_t>{9, 9, 9, 255}, Texture::Content::kSrgb, {}};
+};
+
+TEST(Allocation, NoneInASteadyFrameWhicheverThreadDrawsWhichTile) {
+  for (const bool textured : {false, true})
+    for (const int threads : {1, 2, 5})
+      for (const int samples : {1, 4}) {
+        UnevenFrame frame(textured);
+        Renderer renderer(threads);
+        for (int i = 0; i < 5; ++i) frame.draw(renderer, samples);
+        const std::uint64_t before = allocations;
+        for (int i = 0; i < 40; ++i) frame.draw(renderer, samples);
+        EXPECT_EQ(allocations - before, 0U) << threads << " threads, " << samples << " samples";
+      }
 }
 
 }  // namespace

@@ -81,6 +81,14 @@ TEST(Kernels, AgreeOnTrianglesOfEverySize) {
     }
 }
 
+TEST(Kernels, AgreeOnAMillionTriangles) {
+  const Geometry geometry = triangles(12, 1000000, 240.0F, 1.2F, 0.0F).geometry();
+  Scene scene(pixelProjection(480, 300));
+  scene.frame.samples = 1;
+  scene.draws[0].geometry = &geometry;
+  expectSameOnEveryTarget(scene, "a million triangles");
+}
+
 TEST(Kernels, AgreeOnSlivers) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
