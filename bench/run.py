@@ -96,7 +96,7 @@ class Run:
 def speed(run):
     folder = run.program("")
     run.text("race", os.path.join(BENCH, "race.py"), "--build", folder, "--rounds", "3", "--json", run.file("race.json"))
-    run.text("linear", os.path.join(BENCH, "linear.py"), "--build", folder, "--rounds", "2", "--picture",
+    run.text("linear", os.path.join(BENCH, "linear.py"), "--build", folder, "--picture",
              run.file("linear.svg"))
     run.measure("frames", os.path.join(BENCH, "frame_table.py"), "--build", folder)
     printed = run.command("microbench", run.program("limn_microbench"), "--benchmark_format=json",
