@@ -44,31 +44,35 @@ struct Mask {
   }
 };
 
-/// Whether every sample of `a` has one of `b` within the steps.
-bool isCovered(const Mask& a, const Mask& b, const std::vector<glm::ivec2>& steps) {
+/// Half the width of a disc's rows, from its lowest to its highest.
+std::vector<int> discOf(double radius) {
+  std::vector<int> halfWidths;
+  const int most = static_cast<int>(radius);
+  for (int y = -most; y <= most; ++y)
+    halfWidths.push_back(static_cast<int>(std::sqrt(radius * radius - y * y)));
+  return halfWidths;
+}
+
+/// Whether every sample of `a` has one of `b` within the disc around it.
+bool isCovered(const Mask& a, const Mask& b, const std::vector<int>& disc) {
+  const auto stride = static_cast<std::size_t>(b.width) + 1;
+  std::vector<int> before(stride * static_cast<std::size_t>(b.height), 0);  // samples of b's row left of x
+  for (std::size_t y = 0; y < static_cast<std::size_t>(b.height); ++y)
+    for (std::size_t x = 0; x + 1 < stride; ++x)
+      before[y * stride + x + 1] = before[y * stride + x] + b.covered[y * (stride - 1) + x];
+  const int most = static_cast<int>(disc.size() / 2);
   for (int y = 0; y < a.height; ++y)
     for (int x = 0; x < a.width; ++x) {
       if (a.covered[a.at(x, y)] <= b.covered[b.at(x, y)]) continue;
-      const bool near = std::any_of(steps.begin(), steps.end(), [&](const glm::ivec2& step) {
-        const int i = x + step.x, j = y + step.y;
-        return i >= 0 && j >= 0 && i < b.width && j < b.height && b.covered[b.at(i, j)] != 0;
-      });
+      bool near = false;
+      for (int row = std::max(0, y - most); row <= std::min(b.height - 1, y + most) && !near; ++row) {
+        const int half = disc[static_cast<std::size_t>(row - y + most)];
+        const int* const counts = before.data() + static_cast<std::size_t>(row) * stride;
+        near = counts[std::min(b.width, x + half + 1)] > counts[std::max(0, x - half)];
+      }
       if (!near) return false;
     }
   return true;
-}
-
-/// All steps not longer than `reach`, the shortest first.
-std::vector<glm::ivec2> stepsWithin(double reach) {
-  std::vector<glm::ivec2> steps;
-  const int most = static_cast<int>(reach);
-  for (int y = -most; y <= most; ++y)
-    for (int x = -most; x <= most; ++x)
-      if (x * x + y * y <= reach * reach) steps.emplace_back(x, y);
-  std::stable_sort(steps.begin(), steps.end(), [](const glm::ivec2& a, const glm::ivec2& b) {
-    return a.x * a.x + a.y * a.y < b.x * b.x + b.y * b.y;
-  });
-  return steps;
 }
 
 scene::Sphere boundsOf(const std::vector<glm::vec3>& positions) {
@@ -112,7 +116,7 @@ class Checker {
         refiner_(shape_, topology_, alone_, curves_.view()),
         samples_(promise.pixels >= 1.0 ? 2 : 4),
         promise_(promise),
-        steps_(stepsWithin(std::max(1.0, promise.pixels * samples_ - 0.5))),
+        disc_(discOf(std::max(1.0, promise.pixels * samples_ - 0.5))),
         bounds_(boundsOf(fine.positions)) {}
 
   bool keeps(const dvec3& direction) {
@@ -134,7 +138,7 @@ class Checker {
     second_.draw(points_, stream_.indices);
     for (std::size_t t = 0; t < shape_.triangleCount(); ++t)
       if (!stream_.isReplaced(t)) second_.draw(points_, std::span(small_.indices).subspan(3 * t, 3));
-    return isCovered(first_, second_, steps_) && isCovered(second_, first_, steps_);
+    return isCovered(first_, second_, disc_) && isCovered(second_, first_, disc_);
   }
 
  private:
@@ -146,7 +150,7 @@ class Checker {
   silhouette::Refiner refiner_;
   int samples_;
   OutlinePromise promise_;
-  std::vector<glm::ivec2> steps_;
+  std::vector<int> disc_;  // what counts as near
   scene::Sphere bounds_;
   std::vector<dvec2> points_;
   Mask first_, second_;

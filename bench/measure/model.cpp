@@ -31,7 +31,9 @@ PlacedMesh placed(const scene::Mesh& mesh, const scene::Instance& instance) {
     out.normals.push_back(rigid || !(size > 0.0) ? n : glm::vec3(turned / size));
   }
   out.indices = mesh.indices;
-  if (reflected) {
+  if (!reflected) {
+    out.curves = mesh.curves;
+  } else {
     for (std::size_t i = 0; i + 2 < out.indices.size(); i += 3)
       std::swap(out.indices[i + 1], out.indices[i + 2]);
   }
@@ -128,11 +130,16 @@ struct ModelRefiner::Part {
   const PlacedMesh& placed;
   silhouette::Mesh shape;
   silhouette::Topology topology;
+  scene::DecodedCurves curves;
   silhouette::Refiner refiner;
   silhouette::RefinedStream stream;
 
   Part(const PlacedMesh& mesh, Workers& workers)
-      : placed(mesh), shape(mesh.shape()), topology(shape), refiner(shape, topology, workers) {}
+      : placed(mesh),
+        shape(mesh.shape()),
+        topology(shape),
+        curves(scene::decode(mesh.curves, shape, topology)),
+        refiner(shape, topology, workers, curves.view()) {}
 };
 
 ModelRefiner::ModelRefiner(const std::vector<PlacedMesh>& meshes, Workers& workers) {
@@ -146,7 +153,7 @@ void ModelRefiner::refine(const scene::CameraView& camera, const silhouette::Par
   drawn.positions.clear();
   drawn.indices.clear();
   for (const auto& part : parts_) {
-    const auto& [placed, shape, topology, refiner, stream] = *part;
+    const auto& [placed, shape, topology, curves, refiner, stream] = *part;
     glm::dmat4 modelToView = camera.worldToView;
     modelToView[3] = camera.worldToView * glm::dvec4(placed.offset, 1.0);
     part->refiner.refine(silhouette::makeView(camera.projection, modelToView), parameters, part->stream);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/scene/camera.h"
+#include "apps/scene/stored_curves.h"
 #include "bench/measure/surface.h"
 #include "raster/base/workers.h"
 #include "silhouette/refine.h"
@@ -18,6 +19,7 @@ struct PlacedMesh {
   glm::dvec3 offset{0.0};
   std::vector<glm::vec3> positions, normals;
   std::vector<std::uint32_t> indices;
+  scene::StoredCurves curves;  ///< fitted beforehand, or empty; mirrored instances are measured without
 
   silhouette::Mesh shape() const { return {positions, normals, indices}; }
 };

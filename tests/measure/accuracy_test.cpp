@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "apps/coarsen/coarsen.h"
+#include "apps/scene/builtin.h"
 #include "bench/measure/views.h"
 #include "raster/base/elementary.h"
 
@@ -45,6 +47,29 @@ TEST(Accuracy, OfASphereAgainstALargerOneIsTheDifferenceOfTheirPictures) {
       EXPECT_EQ(view.triangles, 20480u);
     }
   }
+}
+
+// Fitted curves are part of what is measured: without them the same mesh is further from the fine one.
+TEST(Accuracy, OfAFittedModelIsThatOfItsCurves) {
+  Workers workers(2);
+  const scene::Mesh fine = scene::makeBuiltin("torus:32:16").meshes.at(0);
+  const scene::Mesh small = coarsen::coarsenMesh(fine, {100}, workers);
+  Subject subject;
+  subject.meshes = {{glm::dvec3(0.0), small.positions, small.normals, small.indices, small.curves}};
+  subject.flat = surfaceOf(subject.meshes);
+  const std::vector<PlacedMesh> truth{{glm::dvec3(0.0), fine.positions, fine.normals, fine.indices, {}}};
+  subject.truth = surfaceOf(truth);
+  subject.bounds = boundingSphere(subject.truth);
+  const auto offsets = [&] {
+    return measureAccuracy(subject, {variant(silhouette::Method::kPatches)}, randomDirections(5, 4), kSize,
+                           workers)
+        .methods[0];
+  };
+  const std::vector<ViewFigures> fitted = offsets();
+  subject.meshes[0].curves = {};
+  const std::vector<ViewFigures> guessed = offsets();
+  for (std::size_t view = 0; view < fitted.size(); ++view)
+    EXPECT_LT(fitted[view].mean, 0.8 * guessed[view].mean) << "view " << view;
 }
 
 TEST(Accuracy, OfFlatIsThatOfTheCoarseMesh) {
