@@ -17,6 +17,7 @@
 
 #include "raster/base/check.h"
 #include "raster/base/scratch.h"
+#include "silhouette/chord_kernel.h"
 #include "silhouette/edge_clusters.h"
 #include "silhouette/edge_curves.h"
 #include "silhouette/method.h"
@@ -29,6 +30,7 @@
 namespace limn::silhouette {
 namespace {
 
+using glm::dot;
 using glm::vec3;
 
 constexpr std::size_t kClustersPerBlock = 64;
@@ -43,10 +45,26 @@ struct SmoothEdge {
   CurveOffsets offsets{};  // α d
   std::uint32_t segments = 1;
   std::uint32_t firstVertex = 0;  // of segments - 1, or twice that, in the stream
+  float scale = 0;                // pixels that a unit of the model measures at most near it
   bool seam = false;              // the faces have vertices of their own, those of faces[1] come second
 
   std::uint32_t inner() const { return segments - 1; }
   std::uint32_t vertexCount() const { return seam ? 2 * inner() : inner(); }
+};
+
+// Of a triangle's sides: nullptr where one does not bend.
+using Records = std::array<const SmoothEdge*, 3>;
+
+// The vertices along a side of a triangle, in its direction.
+struct SidePoints {
+  std::uint32_t from, to, first, segments;
+  bool backwards;
+
+  std::uint32_t operator()(std::uint32_t i) const {
+    if (i == 0) return from;
+    if (i == segments) return to;
+    return first + (backwards ? segments - 1 - i : i - 1);
+  }
 };
 
 // What a block of triangles adds to the stream.
@@ -58,6 +76,7 @@ struct Scratch {
   std::vector<std::uint32_t> blockCounts;  // smooth edges per block of clusters, then their prefix sums
   std::vector<std::uint64_t> masks;        // per cluster: the edges that bend
   std::vector<float> alphas;               // per place in the clusters' order, where an edge bends
+  std::vector<float> scales;               // per cluster, where an edge bends
   std::vector<SmoothEdge> smooth;
   std::vector<std::uint32_t> recordOf;    // per edge: index into smooth, or kNone
   std::vector<std::uint64_t> candidates;  // bit per triangle: has a smooth edge
@@ -86,7 +105,8 @@ struct Pass {
   void run();
   void classify();
   void measureEdges();
-  void measure(SmoothEdge& smooth);
+  void describe(std::size_t cluster, std::uint32_t record, CurveBatch& batch);
+  void setSegments(const CurveBatch& batch, std::uint32_t record);
   void placeEdges();
   void listCandidates();
   Share decide(std::size_t word);
@@ -95,13 +115,18 @@ struct Pass {
   void emitTriangle(std::uint32_t triangle, const Pattern& pattern, std::uint32_t& vertex,
                     std::uint32_t& face);
 
-  const SmoothEdge* recordOfSide(std::size_t triangle, std::size_t side) const {
-    const std::uint32_t record = scratch.recordOf[topology.sideEdges()[3 * triangle + side]];
-    return record == kNone ? nullptr : &scratch.smooth[record];
+  Records recordsOf(std::size_t triangle) const {
+    const std::uint32_t* edge = &topology.sideEdges()[3 * triangle];
+    Records records{};
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const std::uint32_t record = scratch.recordOf[edge[k]]; record != kNone)
+        records[k] = &scratch.smooth[record];
+    return records;
   }
-  Patch patchOf(std::size_t triangle) const;
-  bool passesMidpoint(const Patch& patch, const Pattern& pattern) const;
-  Pattern patternOf(std::size_t triangle, const Patch& patch) const;
+  Patch patchOf(std::size_t triangle, const Records& records) const;
+  bool passesBare(const Patch& patch, const Records& records, const Pattern& pattern) const;
+  Pattern patternOf(std::size_t triangle, const Records& records) const;
+  SidePoints sidePointsOf(std::uint32_t triangle, std::uint32_t k, const SmoothEdge* smooth) const;
 };
 
 void Pass::run() {
@@ -122,13 +147,14 @@ void Pass::classify() {
   scratch.blockCounts.assign(blocks + 1, 0);
   scratch.masks.resize(count);
   scratch.alphas.resize(count * kEdgesPerCluster);
+  scratch.scales.resize(count);
   const EdgeClusters::Eye eye = clusters.eyeOf(view, parameters);
   crew.forBlocks(count, kClustersPerBlock, [&](std::size_t begin, std::size_t end) {
     int bending = 0;
     for (std::size_t c = begin; c < end; ++c) {
       const std::span<float> alphas =
           std::span(scratch.alphas).subspan(c * kEdgesPerCluster, kEdgesPerCluster);
-      scratch.masks[c] = clusters.classify(c, eye, test, parameters, alphas);
+      scratch.masks[c] = clusters.classify(c, eye, test, alphas, scratch.scales[c]);
       bending += std::popcount(scratch.masks[c]);
     }
     scratch.blockCounts[begin / kClustersPerBlock + 1] = static_cast<std::uint32_t>(bending);
@@ -143,34 +169,56 @@ void Pass::measureEdges() {
   scratch.candidates.assign(stream.replaced.size(), 0);
   crew.forBlocks(clusters.count(), kClustersPerBlock, [&](std::size_t begin, std::size_t end) {
     std::uint32_t record = scratch.blockCounts[begin / kClustersPerBlock];
+    CurveBatch batch{};
     for (std::size_t c = begin; c < end; ++c) {
-      for (std::uint64_t rest = scratch.masks[c]; rest != 0; rest &= rest - 1) {
-        const std::size_t place = c * kEdgesPerCluster + static_cast<std::size_t>(std::countr_zero(rest));
-        SmoothEdge& smooth = scratch.smooth[record];
-        smooth = {};
-        smooth.edge = clusters.edgeAt(place);
-        smooth.alpha = scratch.alphas[place];
-        measure(smooth);
-        scratch.recordOf[smooth.edge] = record++;
-        for (const Side& face : topology.edges()[smooth.edge].faces)
-          if (face.triangle != kNone) markTriangle(scratch.candidates, face.triangle);
-      }
+      if (scratch.masks[c] == 0) continue;
+      batch.count = 0;
+      describe(c, record, batch);
+      setSegments(batch, record);
+      record += static_cast<std::uint32_t>(batch.count);
     }
   });
 }
 
-void Pass::measure(SmoothEdge& smooth) {
-  const EdgeVertices v = edgeVertices(mesh, topology.edges()[smooth.edge]);
-  smooth.offsets = {smooth.alpha * curves[smooth.edge][0], smooth.alpha * curves[smooth.edge][1]};
-  smooth.seam = v[0] != v[1];
-  if (parameters.segments > 0) {
-    smooth.segments = static_cast<std::uint32_t>(parameters.segments);
-    return;
+// The records of a cluster's edges, and their curves one after the other.
+void Pass::describe(std::size_t cluster, std::uint32_t record, CurveBatch& batch) {
+  const bool alone = crew.isAlone();
+  for (std::uint64_t rest = scratch.masks[cluster]; rest != 0; rest &= rest - 1, ++record) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    const std::size_t place = cluster * kEdgesPerCluster + i;
+    SmoothEdge& smooth = scratch.smooth[record];
+    smooth.edge = clusters.edgeAt(place);
+    smooth.alpha = scratch.alphas[place];
+    smooth.scale = scratch.scales[cluster];
+    smooth.seam = (clusters.seams(cluster) >> i & 1) != 0;
+    const CurveOffsets& d = curves[smooth.edge];
+    smooth.offsets = {smooth.alpha * d[0], smooth.alpha * d[1]};
+    const std::array<std::uint32_t, 2>& ends = clusters.endsAt(place);
+    batch.add(mesh.positions[ends[0]], mesh.positions[ends[1]], smooth.offsets);
+    scratch.recordOf[smooth.edge] = record;
+    for (const Side& face : topology.edges()[smooth.edge].faces) {
+      if (face.triangle == kNone) continue;
+      if (alone)
+        scratch.candidates[face.triangle / 64] |= std::uint64_t{1} << (face.triangle % 64);
+      else
+        markTriangle(scratch.candidates, face.triangle);
+    }
   }
-  bool capped = false;
-  const float error = bound.chordError(mesh.positions[v[0][0]], mesh.positions[v[0][1]], smooth.offsets);
-  smooth.segments = static_cast<std::uint32_t>(segmentsFor(error, parameters.tolerance, capped));
-  if (capped) std::atomic_ref<std::size_t>(report.cappedEdges).fetch_add(1, std::memory_order_relaxed);
+}
+
+void Pass::setSegments(const CurveBatch& batch, std::uint32_t record) {
+  std::array<float, CurveBatch::kCapacity> errors;
+  if (parameters.segments == 0) chordErrors(bound, batch, errors.data());
+  std::size_t cappedEdges = 0;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    bool capped = false;
+    const int segments =
+        parameters.segments > 0 ? parameters.segments : segmentsFor(errors[i], parameters.tolerance, capped);
+    scratch.smooth[record + i].segments = static_cast<std::uint32_t>(segments);
+    if (capped) ++cappedEdges;
+  }
+  if (cappedEdges > 0)
+    std::atomic_ref<std::size_t>(report.cappedEdges).fetch_add(cappedEdges, std::memory_order_relaxed);
 }
 
 // Gives every edge its place in the stream and writes its vertices.
@@ -188,49 +236,62 @@ void Pass::placeEdges() {
   });
 }
 
-Patch Pass::patchOf(std::size_t triangle) const {
+Patch Pass::patchOf(std::size_t triangle, const Records& records) const {
   Patch patch;
-  float alphas = 0.0f;
+  patch.wholeFromContour = parameters.silhouetteness == Silhouetteness::kCrossing;
+  const std::uint32_t* corner = &mesh.indices[3 * triangle];
   for (std::size_t k = 0; k < 3; ++k) {
-    patch.corners[k] = mesh.positions[mesh.indices[3 * triangle + k]];
-    const SmoothEdge* smooth = recordOfSide(triangle, k);
-    if (smooth == nullptr) continue;
-    alphas += smooth->alpha;
-    const bool ascends =
-        topology.points()[mesh.indices[3 * triangle + k]] == topology.edges()[smooth->edge].point[0];
-    patch.sides[k] = {smooth->offsets[ascends ? 0 : 1], smooth->offsets[ascends ? 1 : 0]};
+    patch.corners[k] = mesh.positions[corner[k]];
+    patch.alphas[k] = records[k] == nullptr ? 0.0f : records[k]->alpha;
+    if (records[k] == nullptr) continue;
+    const bool ascends = topology.points()[corner[k]] == topology.edges()[records[k]->edge].point[0];
+    const CurveOffsets& d = curves[records[k]->edge];
+    patch.sides[k] = {d[ascends ? 0 : 1], d[ascends ? 1 : 0]};
   }
-  // The centre follows its sides: there where all three are smooth, gone where all are straight.
-  if (!centers.empty()) patch.fittedCenter = (alphas / 3.0f) * centers[triangle];
+  if (!centers.empty()) patch.fittedCenter = centers[triangle];
   return patch;
 }
 
-// Whether a triangle whose sides have at most two segments can do without its midpoint: the joined halves pass
-// within the tolerance of it.
-bool Pass::passesMidpoint(const Patch& patch, const Pattern& pattern) const {
-  const std::uint32_t k = pattern.firstHalved(), halved = pattern.halvedSides();
-  const auto middle = [&](std::uint32_t side) { return curveOffset(patch.sides[side % 3], 0.5f); };
-  vec3 joined(0.0f);  // what the joined halves add to the centroid
-  if (halved == 1) joined = (2.0f / 3.0f) * middle(k);
-  if (halved == 2) joined = (2.0f / 3.0f) * middle(k + 1);
-  if (halved == 3) joined = (middle(0) + middle(1) + middle(2)) / 3.0f;
-  const vec3 flat = patch.flatPoint(kThird, kThird, kThird);
-  return bound.distance(flat + joined, flat + patch.offset(kThird, kThird, kThird)) <= parameters.tolerance;
+// Whether a triangle can do without vertices inside: what its sides span passes within the tolerance of the patch, in
+// the middle where three sides are divided or none, else halfway between the two sides that are joined.
+bool Pass::passesBare(const Patch& patch, const Records& records, const Pattern& pattern) const {
+  const std::uint32_t k = pattern.firstDivided(), divided = pattern.dividedSides();
+  const auto middle = [&](std::uint32_t side) {
+    return patch.alphas[side % 3] * curveOffset(patch.sides[side % 3], 0.5f);
+  };
+  vec3 weights(kThird), spanned(0.0f);
+  if (divided == 3) spanned = (middle(0) + middle(1) + middle(2)) / 3.0f;
+  if (divided == 1 || divided == 2) {
+    weights = vec3(0.25f);
+    weights[static_cast<int>((k + 3 - divided) % 3)] = 0.5f;
+    spanned = 0.5f * (divided == 2 ? middle(k) + middle(k + 1) : middle(k));
+  }
+  const vec3 wanted = patch.offset(weights.x, weights.y, weights.z), apart = wanted - spanned;
+  float scale = 0.0f;
+  for (const SmoothEdge* record : records)
+    if (record != nullptr) scale = std::max(scale, record->scale);
+  if (dot(apart, apart) * (scale * scale) <= parameters.tolerance * parameters.tolerance) return true;
+  const vec3 flat = patch.flatPoint(weights.x, weights.y, weights.z);
+  return bound.distance(flat + spanned, flat + wanted) <= parameters.tolerance;
 }
 
 // The steps of the grid inside follow the largest error of the spokes from the corners to the midpoint, by its size at
 // their middles: a spoke of an equilateral triangle is 1/√3 of a side, so its error is a third of what a side's would be.
-Pattern Pass::patternOf(std::size_t triangle, const Patch& patch) const {
+Pattern Pass::patternOf(std::size_t triangle, const Records& records) const {
   Pattern pattern;
   std::uint32_t most = 1;
   for (std::size_t k = 0; k < 3; ++k) {
-    const SmoothEdge* smooth = recordOfSide(triangle, k);
-    if (smooth == nullptr) continue;
-    pattern.sides[k] = smooth->segments;
-    most = std::max(most, smooth->segments);
+    if (records[k] == nullptr) continue;
+    pattern.sides[k] = records[k]->segments;
+    most = std::max(most, records[k]->segments);
   }
   pattern.steps = most;
-  if (parameters.segments > 0 || (most <= 2 && passesMidpoint(patch, pattern))) return pattern;
+  if (parameters.segments > 0) return pattern;
+  const Patch patch = patchOf(triangle, records);
+  if ((most <= 2 || pattern.dividedSides() < 3) && passesBare(patch, records, pattern)) {
+    pattern.steps = std::min(most, 2u);
+    return pattern;
+  }
 
   const vec3 middle = patch.point(kThird, kThird, kThird);
   float largest = 0.0f;
@@ -265,8 +326,7 @@ Share Pass::decide(std::size_t word) {
   std::uint32_t next = scratch.firstCut[word];
   for (std::uint64_t rest = scratch.candidates[word]; rest != 0; rest &= rest - 1) {
     const std::size_t triangle = 64 * word + static_cast<std::size_t>(std::countr_zero(rest));
-    const Patch patch = patchOf(triangle);
-    const Pattern& pattern = scratch.cuts[next++] = patternOf(triangle, patch);
+    const Pattern& pattern = scratch.cuts[next++] = patternOf(triangle, recordsOf(triangle));
     if (pattern.steps == 1) continue;
     stream.replaced[word] |= std::uint64_t{1} << (triangle % 64);
     ++share.curved;
@@ -333,32 +393,36 @@ void Pass::emitEdge(const SmoothEdge& smooth) {
   }
 }
 
+SidePoints Pass::sidePointsOf(std::uint32_t triangle, std::uint32_t k, const SmoothEdge* smooth) const {
+  const std::uint32_t side = 3 * triangle + k;
+  SidePoints points{mesh.indices[side], mesh.indices[nextInTriangle(side)], 0, 1, false};
+  if (smooth == nullptr) return points;
+  const Edge& edge = topology.edges()[smooth->edge];
+  const std::uint32_t own = edge.faces[1].triangle == triangle && edge.faces[1].side == k ? 1 : 0;
+  points.first = static_cast<std::uint32_t>(mesh.positions.size()) + smooth->firstVertex +
+                 (smooth->seam ? own * smooth->inner() : 0);
+  points.segments = smooth->segments;
+  points.backwards = edge.runsBack(own);
+  return points;
+}
+
 void Pass::emitTriangle(std::uint32_t triangle, const Pattern& pattern, std::uint32_t& vertex,
                         std::uint32_t& face) {
-  const Patch patch = patchOf(triangle);
-  std::array<float, 3> alphas{};
-  for (std::size_t k = 0; k < 3; ++k)
-    if (const SmoothEdge* smooth = recordOfSide(triangle, k); smooth != nullptr) alphas[k] = smooth->alpha;
-  const std::uint32_t firstInner = vertex;
-  forVertices(pattern, [&](float v, float w) {
-    writer.vertex(vertex++, patch.point(1.0f - v - w, v, w), {triangle, {v, w}}, alphas);
-  });
-
-  const auto firstNew = static_cast<std::uint32_t>(mesh.positions.size());
-  const auto sidePoint = [&](std::uint32_t k, std::uint32_t i) {
-    const std::uint32_t side = 3 * triangle + k;
-    if (i == 0) return mesh.indices[side];
-    if (i == pattern.sides[k]) return mesh.indices[nextInTriangle(side)];
-    const SmoothEdge& smooth = *recordOfSide(triangle, k);
-    const Edge& edge = topology.edges()[smooth.edge];
-    const std::uint32_t own = edge.faces[1].triangle == triangle && edge.faces[1].side == k ? 1 : 0;
-    const std::uint32_t first = firstNew + smooth.firstVertex + (smooth.seam ? own * smooth.inner() : 0);
-    return first + (edge.runsBack(own) ? smooth.inner() - i : i - 1);
-  };
-  const auto inner = [&](std::uint32_t i) { return firstNew + firstInner + i; };
-  forTriangles(pattern, sidePoint, inner, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    writer.triangle(face++, triangle, a, b, c);
-  });
+  const Records records = recordsOf(triangle);
+  const std::uint32_t firstInner = static_cast<std::uint32_t>(mesh.positions.size()) + vertex;
+  if (pattern.vertexCount() > 0) {
+    const Patch patch = patchOf(triangle, records);
+    forVertices(pattern, [&](float v, float w) {
+      writer.vertex(vertex++, patch.point(1.0f - v - w, v, w), {triangle, {v, w}}, patch.alphas);
+    });
+  }
+  const std::array<SidePoints, 3> sides{sidePointsOf(triangle, 0, records[0]),
+                                        sidePointsOf(triangle, 1, records[1]),
+                                        sidePointsOf(triangle, 2, records[2])};
+  forTriangles(
+      pattern, [&](std::uint32_t k, std::uint32_t i) { return sides[k](i); },
+      [&](std::uint32_t i) { return firstInner + i; },
+      [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) { writer.triangle(face++, triangle, a, b, c); });
 }
 
 class BlendedPatches final : public MethodState {
@@ -417,9 +481,9 @@ class BlendedPatches final : public MethodState {
   }
 
   void levelScratch() override {
-    levelCapacity(scratch_, &Scratch::blockCounts, &Scratch::masks, &Scratch::alphas, &Scratch::smooth,
-                  &Scratch::recordOf, &Scratch::candidates, &Scratch::firstCut, &Scratch::cuts,
-                  &Scratch::shares);
+    levelCapacity(scratch_, &Scratch::blockCounts, &Scratch::masks, &Scratch::alphas, &Scratch::scales,
+                  &Scratch::smooth, &Scratch::recordOf, &Scratch::candidates, &Scratch::firstCut,
+                  &Scratch::cuts, &Scratch::shares);
   }
 
   void silhouetteness(const View& view, const Parameters& parameters, std::vector<float>& alphas) override {
@@ -428,10 +492,13 @@ class BlendedPatches final : public MethodState {
   }
 
  private:
-  // A fitted boundary is known, not guessed: always smooth.
+  // Fitted curves are known, not guessed: boundaries are always smooth, and edges wherever the contour may come near,
+  // since the fitted outline need not run where the shading normals have it.
   Parameters whereFitted(const Parameters& parameters) const {
     Parameters wanted = parameters;
-    wanted.boundaries = wanted.boundaries || !fitted_.empty();
+    if (fitted_.empty()) return wanted;
+    wanted.boundaries = true;
+    if (wanted.silhouetteness == Silhouetteness::kCrossing) wanted.silhouetteness = Silhouetteness::kContour;
     return wanted;
   }
 

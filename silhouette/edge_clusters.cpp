@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -17,7 +18,6 @@ using glm::vec3;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kRounding = 1.001f;   // covers the roundings of bounds
 constexpr float kConeMargin = 1e-3f;  // in cosines
-enum Kind : std::uint8_t { kNever, kAlways, kByFacing };
 
 std::uint32_t spread(std::uint32_t x) {  // ten bits, two zeros between
   x = (x | x << 16) & 0x030000ff;
@@ -64,7 +64,8 @@ void EdgeClusters::build(const Mesh& mesh, const Topology& topology) {
   order_ = mortonOrder(mesh, topology);
   const std::size_t edges = order_.size();
   clusters_.assign((edges + kEdgesPerCluster - 1) / kEdgesPerCluster, {});
-  corners_.resize(edges);
+  ends_.resize(edges);
+  corners_.assign(clusters_.size() * 6 * kEdgesPerCluster, 0);
   vertices_.clear();
   std::vector<std::uint32_t> own;
   for (std::size_t c = 0; c < clusters_.size(); ++c) {
@@ -72,19 +73,24 @@ void EdgeClusters::build(const Mesh& mesh, const Topology& topology) {
     const auto cornerOf = [&](std::size_t place, std::size_t k) {
       const Edge& edge = topology.edges()[order_[place]];
       const Side& face = edge.faces[edge.boundary ? 0 : k / 3];
-      return mesh.indices[3 * std::size_t{face.triangle} + k % 3];
+      return mesh.indices[3 * std::size_t{face.triangle} + (face.side + k) % 3];
     };
     own.clear();
     for (std::size_t place = first; place < last; ++place)
       for (std::size_t k = 0; k < 6; ++k) own.push_back(cornerOf(place, k));
     std::sort(own.begin(), own.end());
     own.erase(std::unique(own.begin(), own.end()), own.end());
-    for (std::size_t place = first; place < last; ++place)
+    Cluster& cluster = clusters_[c];
+    for (std::size_t place = first; place < last; ++place) {
       for (std::size_t k = 0; k < 6; ++k)
-        corners_[place].local[k] = static_cast<std::uint16_t>(
+        corners_[(6 * c + k) * kEdgesPerCluster + place - first] = static_cast<std::uint16_t>(
             std::lower_bound(own.begin(), own.end(), cornerOf(place, k)) - own.begin());
-    clusters_[c].firstVertex = static_cast<std::uint32_t>(vertices_.size());
-    clusters_[c].vertexCount = static_cast<std::uint32_t>(own.size());
+      const EdgeVertices v = edgeVertices(mesh, topology.edges()[order_[place]]);
+      ends_[place] = v[0];
+      if (v[0] != v[1]) cluster.seams |= std::uint64_t{1} << (place - first);
+    }
+    cluster.firstVertex = static_cast<std::uint32_t>(vertices_.size());
+    cluster.vertexCount = static_cast<std::uint32_t>(own.size());
     vertices_.insert(vertices_.end(), own.begin(), own.end());
   }
 }
@@ -92,37 +98,42 @@ void EdgeClusters::build(const Mesh& mesh, const Topology& topology) {
 void EdgeClusters::update(const Mesh& mesh, const Topology& topology, const EdgeTest& test,
                           std::span<const CurveOffsets> curves, std::span<const vec3> centers,
                           const Parameters& parameters, const Crew& crew) {
-  kinds_.resize(order_.size());
-  bulges_.resize(order_.size());
+  betas_.assign(clusters_.size() * kEdgesPerCluster, 0.0f);
+  bulges_.assign(clusters_.size() * kEdgesPerCluster, 0.0f);
   for (auto* array : {&x_, &y_, &z_, &nx_, &ny_, &nz_}) array->resize(vertices_.size());
   largestBeta_ = test.largestBeta(parameters);
   crew.forBlocks(clusters_.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) {
-      Cluster& cluster = clusters_[c];
-      cluster.bulge = 0.0f;
-      cluster.alwaysSmooth = false;
-      for (std::size_t place = c * kEdgesPerCluster;
-           place < std::min((c + 1) * kEdgesPerCluster, order_.size()); ++place) {
-        const Edge& edge = topology.edges()[order_[place]];
-        const CurveOffsets& d = curves[order_[place]];
-        float center = 0.0f;
-        if (!centers.empty())
-          for (const Side& face : edge.faces)
-            if (face.triangle != kNone) center = std::max(center, lengthOf(centers[face.triangle]));
-        // The most that edge or patch rise above their flat places: chords by 3/4 of a second difference, midpoints
-        // by the mean of six offsets and 2/9 of a fitted centre's.
-        const float chord = 0.75f * std::max(lengthOf(d[1] - 2.0f * d[0]), lengthOf(d[0] - 2.0f * d[1]));
-        bulges_[place] = std::max(chord, std::max(lengthOf(d[0]), lengthOf(d[1])) + 0.25f * center);
-        const bool always = edge.boundary ? parameters.boundaries : parameters.features && edge.isFeature();
-        const bool never = edge.nonManifold || (edge.boundary && !always) || bulges_[place] == 0.0f;
-        kinds_[place] = never ? kNever : always ? kAlways : kByFacing;
-        if (never) continue;
-        cluster.bulge = std::max(cluster.bulge, bulges_[place]);
-        cluster.alwaysSmooth = cluster.alwaysSmooth || always;
-      }
+      measureEdges(c, topology, test, curves, centers, parameters);
       boundCluster(c, mesh, test);
     }
   });
+}
+
+// The most that edge or patch rise above their flat places: chords by 3/4 of a second difference, midpoints by the mean
+// of six offsets and 2/9 of a fitted centre's.
+void EdgeClusters::measureEdges(std::size_t c, const Topology& topology, const EdgeTest& test,
+                                std::span<const CurveOffsets> curves, std::span<const vec3> centers,
+                                const Parameters& parameters) {
+  Cluster& cluster = clusters_[c];
+  cluster.bulge = 0.0f;
+  cluster.always = 0;
+  for (std::size_t i = 0; i < kEdgesPerCluster && c * kEdgesPerCluster + i < order_.size(); ++i) {
+    const std::size_t place = c * kEdgesPerCluster + i;
+    const Edge& edge = topology.edges()[order_[place]];
+    const bool always = edge.boundary ? parameters.boundaries : parameters.features && edge.isFeature();
+    betas_[place] = test.beta(parameters, order_[place]);
+    if (edge.nonManifold || (edge.boundary && !always)) continue;
+    const CurveOffsets& d = curves[order_[place]];
+    float center = 0.0f;
+    if (!centers.empty())
+      for (const Side& face : edge.faces)
+        if (face.triangle != kNone) center = std::max(center, lengthOf(centers[face.triangle]));
+    const float chord = 0.75f * std::max(lengthOf(d[1] - 2.0f * d[0]), lengthOf(d[0] - 2.0f * d[1]));
+    bulges_[place] = std::max(chord, std::max(lengthOf(d[0]), lengthOf(d[1])) + 0.25f * center);
+    cluster.bulge = std::max(cluster.bulge, bulges_[place]);
+    if (always && bulges_[place] > 0.0f) cluster.always |= std::uint64_t{1} << i;
+  }
 }
 
 // Bounding sphere of its vertices, and the cone of their normals and of their faces'.
@@ -160,7 +171,7 @@ void EdgeClusters::boundCluster(std::size_t c, const Mesh& mesh, const EdgeTest&
 EdgeClusters::Eye::Eye(const View& from, const Parameters& parameters, float largestBeta)
     : view(from),
       perspective(from.projection.perspective),
-      contour(parameters.silhouetteness == Silhouetteness::kContour),
+      silhouetteness(parameters.silhouetteness),
       tolerance(parameters.segments > 0 ? 0.0f : parameters.tolerance),
       beta(largestBeta),
       axis(-from.modelToView[0][2], -from.modelToView[1][2], -from.modelToView[2][2]),
@@ -190,9 +201,9 @@ float EdgeClusters::visibleScale(const Cluster& cluster, const Eye& eye) const {
   return kRounding * eye.stretch * eye.pixels * std::sqrt(1.0f + slope2) / nearest;
 }
 
-// Whether f > β for every edge whose normals lie in the cone and whose points lie in the sphere: with θ the angle
+// Whether α = 0 for every edge whose normals lie in the cone and whose points lie in the sphere: with θ the angle
 // between the axis and the line of sight, ω that of the cone and δ that of the sphere, all facings are at least
-// cos(θ + ω + δ) in size and of one sign.
+// cos(θ + ω + δ) in size and of one sign. They differ by at most |n - n'| + |v - v'| <= 2 (sin ω + sin δ).
 bool EdgeClusters::facesAway(const Cluster& cluster, const Eye& eye) const {
   if (cluster.cosine <= 0.0f) return false;
   vec3 sight = -eye.view.direction;
@@ -211,45 +222,44 @@ bool EdgeClusters::facesAway(const Cluster& cluster, const Eye& eye) const {
   const float sinSum = sinTheta * cluster.cosine + cosTheta * cluster.sine;
   if (cosSum <= 0.0f) return false;
   const float least = cosSum * cosDelta - sinSum * sinDelta - kConeMargin;
+  if (eye.silhouetteness == Silhouetteness::kCrossing) {
+    const float spread = std::min(1.0f - least, 2.0f * (cluster.sine + sinDelta) + kConeMargin);
+    return least > 0.0f && least > eye.beta * spread;
+  }
   return least > 0.0f && least * least > eye.beta;
 }
 
 std::uint64_t EdgeClusters::classify(std::size_t c, const Eye& eye, const EdgeTest& test,
-                                     const Parameters& parameters, std::span<float> alphas) const {
+                                     std::span<float> alphas, float& scale) const {
   const Cluster& cluster = clusters_[c];
   if (cluster.bulge == 0.0f) return 0;
-  const float scale = visibleScale(cluster, eye);
-  if (cluster.bulge * scale <= eye.tolerance) return 0;
-  if (!cluster.alwaysSmooth && facesAway(cluster, eye)) return 0;
+  scale = visibleScale(cluster, eye);
+  const float threshold = eye.tolerance / scale;
+  if (cluster.bulge <= threshold) return 0;
+  if (cluster.always == 0 && facesAway(cluster, eye)) return 0;
 
-  const std::size_t first = cluster.firstVertex, count = cluster.vertexCount;
-  std::array<float, 6 * kEdgesPerCluster> facings;  // at most six vertices per edge
-  if (eye.contour)
-    computeFacings(eye.perspective ? eye.view.eye : -eye.view.direction, eye.perspective,
-                   {&x_[first], &y_[first], &z_[first], &nx_[first], &ny_[first], &nz_[first]}, count,
-                   facings.data());
   std::uint64_t bends = 0;
   const std::size_t begin = c * kEdgesPerCluster, end = std::min(begin + kEdgesPerCluster, order_.size());
-  for (std::size_t place = begin; place < end; ++place) {
-    const std::size_t i = place - begin;
-    if (kinds_[place] == kNever) continue;
-    float alpha = 1.0f;
-    if (kinds_[place] == kByFacing) {
-      float f = 0.0f;
-      if (eye.contour) {
-        float low = 2.0f, high = -2.0f;
-        for (const std::uint16_t corner : corners_[place].local) {
-          low = std::min(low, facings[corner]);
-          high = std::max(high, facings[corner]);
-        }
-        f = low * high;
-      } else {
-        f = test.byEdge(eye.view, topology_->edges()[order_[place]]);
-      }
-      alpha = silhouettenessOf(f, test.beta(parameters, order_[place]));
+  if (eye.silhouetteness == Silhouetteness::kEdge) {
+    for (std::size_t place = begin; place < end; ++place) {
+      if (!(bulges_[place] > threshold) || (cluster.always >> (place - begin) & 1) != 0) continue;
+      const float f = test.byEdge(eye.view, topology_->edges()[order_[place]]);
+      const float alpha = alphas[place - begin] = silhouettenessOf(f, betas_[place]);
+      if (alpha * bulges_[place] > threshold) bends |= std::uint64_t{1} << (place - begin);
     }
-    alphas[i] = alpha;
-    if (alpha > 0.0f && alpha * bulges_[place] * scale > eye.tolerance) bends |= std::uint64_t{1} << i;
+  } else {
+    const std::size_t first = cluster.firstVertex;
+    std::array<float, 6 * kEdgesPerCluster> facings;  // at most six vertices per edge
+    computeFacings(eye.perspective ? eye.view.eye : -eye.view.direction, eye.perspective,
+                   {&x_[first], &y_[first], &z_[first], &nx_[first], &ny_[first], &nz_[first]},
+                   cluster.vertexCount, facings.data());
+    bends = computeAlphas({&corners_[6 * begin], facings.data(), &betas_[begin], &bulges_[begin]},
+                          eye.silhouetteness == Silhouetteness::kCrossing, threshold, alphas.data());
+  }
+  for (std::uint64_t rest = cluster.always; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    alphas[i] = 1.0f;
+    if (bulges_[begin + i] > threshold) bends |= std::uint64_t{1} << i;
   }
   return bends;
 }

@@ -21,6 +21,8 @@ class Crew {
   /// The calling thread alone, which holds `slot`.
   explicit Crew(int slot) : slot_(slot) {}
 
+  /// Whether no other thread works on this refinement.
+  bool isAlone() const { return workers_ == nullptr || workers_->threads() == 1; }
   /// Names the scratch memory of this refinement; no other refinement uses it at the time.
   std::size_t slot() const { return static_cast<std::size_t>(slot_); }
 

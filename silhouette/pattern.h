@@ -2,7 +2,7 @@
 //
 //            2              Side k runs from corner k to corner k + 1 and has segments of its own, which its other
 //           / \             triangle shares. The inside has the points of a barycentric grid of N steps, those of its
-//          /   \            border left out: none for N <= 2, where halved sides are joined by the fewest triangles;
+//          /   \            border left out: none for N <= 2, where divided sides are joined by the fewest triangles;
 //         / .   \           the midpoint for N = 3, which makes the fan of the paper; N - 3 steps a side for more. A strip
 //        / . .   \          joins them to each side. With N segments on every side that makes N² triangles.
 //       0---------1
@@ -15,7 +15,7 @@
 namespace limn::silhouette {
 
 struct Pattern {
-  std::array<std::uint32_t, 3> sides{1, 1, 1};  ///< segments of each side, >= 1; at most 2 where steps <= 2
+  std::array<std::uint32_t, 3> sides{1, 1, 1};  ///< segments of each side, >= 1
   std::uint32_t steps = 1;                      ///< N of the grid, >= 1
 
   /// Steps along a side of the grid's inside; for steps >= 3.
@@ -27,11 +27,11 @@ struct Pattern {
     return steps < 3 ? border - 2 : border + 3 * innerSteps() + innerSteps() * innerSteps();
   }
 
-  std::uint32_t halvedSides() const {
+  std::uint32_t dividedSides() const {
     return (sides[0] > 1 ? 1u : 0u) + (sides[1] > 1 ? 1u : 0u) + (sides[2] > 1 ? 1u : 0u);
   }
-  /// The first of the halved sides: the one after a whole one, or 0.
-  std::uint32_t firstHalved() const {
+  /// The first of the divided sides: the one after a whole one, or 0.
+  std::uint32_t firstDivided() const {
     for (std::uint32_t k = 0; k < 3; ++k)
       if (sides[k] > 1 && sides[k == 0 ? 2 : k - 1] == 1) return k;
     return 0;
@@ -48,36 +48,40 @@ void forVertices(const Pattern& pattern, const Visit& visit) {
       visit(static_cast<float>(i) / steps, static_cast<float>(r) / steps);
 }
 
-/// The triangles of a pattern without vertices inside: one corner is cut off for two halved sides, all three for three.
+/// The triangles of a pattern without vertices inside: a ladder between two divided sides, a fan over one; for three halved
+/// sides all corners are cut off.
 template <class SidePoint, class Emit>
-void forHalvedTriangles(const Pattern& pattern, const SidePoint& sidePoint, const Emit& emit) {
-  const std::uint32_t k = pattern.firstHalved(), next = (k + 1) % 3, last = (k + 2) % 3;
-  const auto a = sidePoint(k, 0), b = sidePoint(next, 0), c = sidePoint(last, 0);
-  if (pattern.halvedSides() == 0) return emit(a, b, c);
-  const auto first = sidePoint(k, 1);
-  if (pattern.halvedSides() == 1) {
-    emit(a, first, c);
-    emit(first, b, c);
+void forBareTriangles(const Pattern& pattern, const SidePoint& sidePoint, const Emit& emit) {
+  const std::uint32_t k = pattern.firstDivided(), next = (k + 1) % 3, last = (k + 2) % 3;
+  if (pattern.dividedSides() == 3) {
+    const auto first = sidePoint(0, 1), second = sidePoint(1, 1), third = sidePoint(2, 1);
+    emit(first, sidePoint(1, 0), second);
+    emit(sidePoint(0, 0), first, third);
+    emit(third, second, sidePoint(2, 0));
+    emit(first, second, third);
     return;
   }
-  const auto second = sidePoint(next, 1);
-  emit(first, b, second);
-  if (pattern.halvedSides() == 2) {
-    emit(a, first, second);
-    emit(a, second, c);
-    return;
+  // Up the two sides from the corner between them, always along the shorter of the next steps.
+  const std::uint32_t m = pattern.sides[k], n = pattern.sides[next];
+  const auto left = [&](std::uint32_t i) { return sidePoint(k, m - i); };
+  const auto right = [&](std::uint32_t j) { return j == n ? sidePoint(last, 0) : sidePoint(next, j); };
+  emit(left(1), left(0), right(1));
+  for (std::uint32_t i = 1, j = 1; i < m || j < n;) {
+    if (j == n || (i < m && (i + 1) * n <= (j + 1) * m)) {
+      emit(left(i + 1), left(i), right(j));
+      ++i;
+    } else {
+      emit(left(i), right(j), right(j + 1));
+      ++j;
+    }
   }
-  const auto third = sidePoint(last, 1);
-  emit(a, first, third);
-  emit(third, second, c);
-  emit(first, second, third);
 }
 
 /// Calls emit(a, b, c) for the triangles, counter-clockwise like the whole. `sidePoint(k, i)` names point i = 0 …
 /// sides[k] of side k, `inner(i)` vertex i of forVertices.
 template <class SidePoint, class Inner, class Emit>
 void forTriangles(const Pattern& pattern, const SidePoint& sidePoint, const Inner& inner, const Emit& emit) {
-  if (pattern.steps < 3) return forHalvedTriangles(pattern, sidePoint, emit);
+  if (pattern.steps < 3) return forBareTriangles(pattern, sidePoint, emit);
   const std::uint32_t m = pattern.innerSteps();
   const auto point = [&](std::uint32_t r, std::uint32_t i) {
     return inner(r * (m + 1) - r * (r - 1) / 2 + i);
@@ -91,8 +95,10 @@ void forTriangles(const Pattern& pattern, const SidePoint& sidePoint, const Inne
   const auto inside = [&](std::uint32_t k, std::uint32_t j) {
     return k == 0 ? point(0, j) : k == 1 ? point(j, m - j) : point(m - j, 0);
   };
+  // Only where the cut passes before the inside's corner point, (1/N, 1/N) along the two sides.
   const auto isCut = [&](std::uint32_t corner) {
-    return pattern.sides[corner] > 1 && pattern.sides[(corner + 2) % 3] > 1;
+    const std::uint32_t after = pattern.sides[corner], before = pattern.sides[(corner + 2) % 3];
+    return after > 1 && before > 1 && after + before > pattern.steps;
   };
   for (std::uint32_t k = 0; k < 3; ++k) {
     // Between two divided sides the corner is cut off: the line from it to the inside would be the longest of all.

@@ -32,6 +32,18 @@
 
 namespace limn::silhouette {
 
+/// What a view makes of a point p: linear p + origin has pixels per unit of depth twice, and the depth (positive in
+/// front).
+struct PixelMap {
+  /// 3/4, and a share that covers the roundings of the bound's own evaluation; in real numbers it is exact.
+  static constexpr float kChordFactor = 0.75f * 1.0001f;
+
+  glm::mat3 linear{1.0f};
+  glm::vec3 origin{0.0f};
+  float nearPlane = 0;
+  bool perspective = true;
+};
+
 class PixelBound {
  public:
   explicit PixelBound(const View& view);
@@ -42,14 +54,12 @@ class PixelBound {
   /// Distance in pixels between the projections of two points, depths clamped to the near plane.
   float distance(const glm::vec3& p, const glm::vec3& q) const;
 
- private:
-  glm::vec3 toView(const glm::vec3& p) const { return linear_ * p + origin_; }
+  const PixelMap& map() const { return map_; }
 
-  glm::mat3
-      linear_;  // pixels per unit of depth, pixels per unit of depth, and depth itself (positive in front)
-  glm::vec3 origin_;
-  float nearPlane_;
-  bool perspective_;
+ private:
+  glm::vec3 toView(const glm::vec3& p) const { return map_.linear * p + map_.origin; }
+
+  PixelMap map_;
 };
 
 /// The least number of segments whose error is within the tolerance, at least 1; `capped` is set when that is

@@ -31,7 +31,12 @@
 namespace limn::silhouette {
 
 enum class Method { kFlat, kPatches, kCurves, kPn };
-enum class Silhouetteness { kEdge, kContour };  ///< methods/1, equations (1) and the third choice of 1.1
+/// What tells a silhouette edge; silhouetteness.h has the formulas.
+enum class Silhouetteness {
+  kEdge,     ///< its faces: (1) of the paper
+  kContour,  ///< the shading normals of its faces' corners
+  kCrossing  ///< where the zero set of the shading normals' facing crosses it or its faces; fitted curves take kContour
+};
 enum class Tangents { kProjected, kCircular, kGeodesic };
 enum class ShadingNormals { kLinear, kQuadratic };
 
@@ -40,10 +45,10 @@ struct Parameters {
   Method method = Method::kPatches;
   float tolerance = 0.25f;           ///< guaranteed distance in pixels, >= 0; used when segments == 0
   int segments = 0;                  ///< fixed count per edge, 1 … kMaxSegments; 0 = from the tolerance
-  float beta = 0.05f;                ///< constant β of (2), >= 0; the paper's 0.25 draws the same outline
+  float beta = 0.1f;                 ///< constant β of (2), >= 0; the paper has 0.25
   float wedgeDegrees = 0;            ///< > 0: β per edge from the wedge angle φ, (3)
   std::span<const float> edgeBetas;  ///< not empty: β of every edge of the topology, before the two above
-  Silhouetteness silhouetteness = Silhouetteness::kContour;
+  Silhouetteness silhouetteness = Silhouetteness::kCrossing;
   Tangents tangents = Tangents::kGeodesic;
   bool robust = true;       ///< limited ends, methods/1 section 1.6
   bool features = true;     ///< feature edges smooth from every viewpoint

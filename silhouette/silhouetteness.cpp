@@ -56,22 +56,23 @@ float EdgeTest::byEdge(const View& view, const Edge& edge) const {
   return length2 > 0.0f ? product / length2 : 0.0f;
 }
 
-// Takes the facings of a triangle's corners into [low, high].
-void EdgeTest::widen(const View& view, std::size_t triangle, float& low, float& high) const {
-  for (std::size_t corner = 0; corner < 3; ++corner) {
-    const std::uint32_t vertex = mesh_.indices[3 * triangle + corner];
+EdgeFacings EdgeTest::facings(const View& view, const Edge& edge) const {
+  const auto at = [&](const Side& face, std::uint32_t corner) {
+    const std::uint32_t vertex = mesh_.indices[3 * face.triangle + (face.side + corner) % 3];
     const vec3 v = toEye(view, mesh_.positions[vertex]);
     const float length2 = dot(v, v);
-    const float facing = length2 > 0.0f ? dot(v, mesh_.normals[vertex]) / std::sqrt(length2) : 0.0f;
-    low = std::min(low, facing);
-    high = std::max(high, facing);
+    return length2 > 0.0f ? dot(v, mesh_.normals[vertex]) / std::sqrt(length2) : 0.0f;
+  };
+  EdgeFacings g{2.0f, -2.0f, {}};
+  for (std::size_t face = 0; face < 2; ++face) {
+    for (std::uint32_t end = 0; end < 2; ++end) {
+      const float facing = at(edge.faces[face], end);
+      g.low = std::min(g.low, facing);
+      g.high = std::max(g.high, facing);
+    }
+    g.opposite[face] = at(edge.faces[face], 2);
   }
-}
-
-float EdgeTest::byContour(const View& view, const Edge& edge) const {
-  float low = 2.0f, high = -2.0f;
-  for (const Side& face : edge.faces) widen(view, face.triangle, low, high);
-  return low * high;
+  return g;
 }
 
 float EdgeTest::largestBeta(const Parameters& parameters) const {
@@ -83,9 +84,12 @@ float EdgeTest::alpha(const View& view, const Parameters& parameters, std::size_
   if (edge.nonManifold) return 0.0f;
   if (edge.boundary) return parameters.boundaries ? 1.0f : 0.0f;
   if (parameters.features && edge.isFeature()) return 1.0f;
-  const bool contour = parameters.silhouetteness == Silhouetteness::kContour;
-  const float f = contour ? byContour(view, edge) : byEdge(view, edge);
-  return silhouettenessOf(f, beta(parameters, e));
+  if (parameters.silhouetteness == Silhouetteness::kEdge)
+    return silhouettenessOf(byEdge(view, edge), beta(parameters, e));
+  const EdgeFacings g = facings(view, edge);
+  return parameters.silhouetteness == Silhouetteness::kContour
+             ? contourSilhouetteness(g, beta(parameters, e))
+             : crossingSilhouetteness(g, beta(parameters, e));
 }
 
 }  // namespace limn::silhouette

@@ -11,7 +11,7 @@ inline const std::vector<std::string>& methodNames() {
   return names;
 }
 inline const std::vector<std::string>& silhouettenessNames() {
-  static const std::vector<std::string> names = {"edge", "contour"};
+  static const std::vector<std::string> names = {"edge", "contour", "crossing"};
   return names;
 }
 inline const std::vector<std::string>& tangentsNames() {

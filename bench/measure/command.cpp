@@ -22,7 +22,8 @@ const std::map<std::string, Tangents> kTangents{{"projected", Tangents::kProject
                                                 {"circular", Tangents::kCircular},
                                                 {"geodesic", Tangents::kGeodesic}};
 const std::map<std::string, Silhouetteness> kSilhouetteness{{"edge", Silhouetteness::kEdge},
-                                                            {"contour", Silhouetteness::kContour}};
+                                                            {"contour", Silhouetteness::kContour},
+                                                            {"crossing", Silhouetteness::kCrossing}};
 const std::map<std::string, bool> kSwitch{{"on", true}, {"off", false}};
 
 template <class Value>
@@ -57,7 +58,7 @@ void addOptions(CLI::App& command, Options& options) {
   command.add_option("--beta", p.beta, "width of the transition")->check(CLI::NonNegativeNumber);
   command.add_option("--wedge", p.wedgeDegrees, "wedge angle in degrees instead of beta")
       ->check(CLI::NonNegativeNumber);
-  command.add_option("--silhouetteness", p.silhouetteness, "edge or contour")
+  command.add_option("--silhouetteness", p.silhouetteness, "edge, contour or crossing")
       ->transform(oneOf(kSilhouetteness));
   command.add_option("--tangents", p.tangents, "projected, circular or geodesic")
       ->transform(oneOf(kTangents));

@@ -51,7 +51,8 @@ TEST(EdgeClusters, PassOverOnlyWhatDoesNotShow) {
   for (const Shape& shape : shapes) {
     const Mesh mesh = shape.mesh();
     const Topology topology(mesh);
-    for (const Silhouetteness silhouetteness : {Silhouetteness::kContour, Silhouetteness::kEdge}) {
+    for (const Silhouetteness silhouetteness :
+         {Silhouetteness::kCrossing, Silhouetteness::kContour, Silhouetteness::kEdge}) {
       Parameters parameters;
       parameters.silhouetteness = silhouetteness;
       parameters.features = shape.name != "cube";
@@ -68,8 +69,9 @@ TEST(EdgeClusters, PassOverOnlyWhatDoesNotShow) {
         const EdgeClusters::Eye eye = clusters.eyeOf(view, parameters);
         const PixelBound bound(view);
         std::vector<float> alphas(kEdgesPerCluster);
+        float scale = 0.0f;
         for (std::size_t c = 0; c < clusters.count(); ++c) {
-          const std::uint64_t bends = clusters.classify(c, eye, test, parameters, alphas);
+          const std::uint64_t bends = clusters.classify(c, eye, test, alphas, scale);
           for (std::size_t i = 0; i < kEdgesPerCluster && c * kEdgesPerCluster + i < topology.edges().size();
                ++i) {
             const std::uint32_t e = clusters.edgeAt(c * kEdgesPerCluster + i);

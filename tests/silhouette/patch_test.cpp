@@ -174,6 +174,50 @@ TEST(Silhouetteness, IsAsWritten) {
   }
 }
 
+// The crossing variant: whole where the contour crosses, and continuous where it leaves edges, faces and corners.
+TEST(Silhouetteness, FollowsTheContour) {
+  constexpr float kBeta = 0.1f;
+  EXPECT_EQ(crossingSilhouetteness({-0.2f, 0.1f, {0.3f, 0.4f}}, kBeta), 1.0f);
+  EXPECT_EQ(crossingSilhouetteness({0.0f, 0.1f, {0.3f, 0.4f}}, 0.0f), 1.0f);
+  EXPECT_EQ(crossingSilhouetteness({0.2f, 0.2f, {0.5f, 0.4f}}, kBeta), 0.0f);
+  // The contour crosses a face at a quarter of its height.
+  EXPECT_FLOAT_EQ(crossingSilhouetteness({0.1f, 0.1f, {-0.3f, 0.4f}}, kBeta), 0.75f);
+  EXPECT_FLOAT_EQ(crossingSilhouetteness({-0.1f, -0.1f, {-0.3f, 0.3f}}, kBeta), 0.75f);
+  // Each facing moves through zero in small steps, the others wherever they are.
+  Random random{std::mt19937(9)};
+  for (int k = 0; k < 2000; ++k) {
+    float g[4] = {random.next(), random.next(), random.next(), random.next()};
+    const auto alpha = [&] {
+      return crossingSilhouetteness({std::min(g[0], g[1]), std::max(g[0], g[1]), {g[2], g[3]}}, kBeta);
+    };
+    const std::size_t moving = random.engine() % 4;
+    const float spread = std::max({g[0], g[1], g[2], g[3]}) - std::min({g[0], g[1], g[2], g[3]});
+    if (spread < 0.1f || std::fabs(g[moving == 0 ? 1 : 0]) < 0.01f) continue;
+    g[moving] = -1e-5f;
+    const float before = alpha();
+    g[moving] = 1e-5f;
+    EXPECT_NEAR(alpha(), before, 2e-2f) << "case " << k;
+  }
+}
+
+// A patch that is whole from the contour on has there, and beyond, the points of the whole patch.
+TEST(Patch, IsWholeFromTheContour) {
+  Random random{std::mt19937(10)};
+  for (int k = 0; k < 100; ++k) {
+    Patch whole;
+    for (CurveOffsets& side : whole.sides) side = {random.vector(), random.vector()};
+    Patch blended = whole;
+    blended.wholeFromContour = true;
+    blended.alphas[0] = 0.6f;  // the contour runs at w = 0.4
+    for (const float w : {0.4f, 0.5f, 0.9f}) {
+      const float v = 0.3f * (1.0f - w), u = 1.0f - v - w;
+      EXPECT_LT(glm::length(blended.offset(u, v, w) - whole.offset(u, v, w)), 1e-6f);
+    }
+    const vec3 onSide = blended.offset(0.5f, 0.5f, 0.0f);  // and on the side the blended curve's
+    EXPECT_LT(glm::length(onSide - 0.6f * curveOffset(whole.sides[0], 0.5f)), 1e-6f);
+  }
+}
+
 TEST(Silhouetteness, OfACubesEdges) {
   const Shape box = cube();
   Workers workers(1);

@@ -117,6 +117,7 @@ TEST(Tolerance, RefinedSphereTendsToTheSphere) {
   Refiner refiner(sphere.mesh(), topology, workers);
   Parameters parameters;
   parameters.tangents = Tangents::kCircular;
+  parameters.silhouetteness = Silhouetteness::kContour;
   parameters.beta = 0.25f;  // whatever the contour may reach is wholly smooth
   double last = 1e300;
   for (const float tolerance : {4.0f, 1.0f, 0.25f, 0.0625f}) {

@@ -1,0 +1,100 @@
+#include "silhouette/chord_kernel.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "silhouette/chord_kernel.cpp"
+#include <hwy/foreach_target.h>
+// After foreach_target, as Highway wants it.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace limn::silhouette::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::CappedTag<float, 16>;
+using V = hn::Vec<Tag>;
+
+struct Vector {
+  V x, y, z;
+};
+
+Vector add(const Vector& a, const Vector& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+Vector subtract(const Vector& a, const Vector& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+Vector load(const CurveBatch& curves, std::size_t k, std::size_t i) {
+  const Tag tag;
+  return {hn::LoadU(tag, curves.coordinates[k] + i), hn::LoadU(tag, curves.coordinates[k + 1] + i),
+          hn::LoadU(tag, curves.coordinates[k + 2] + i)};
+}
+
+// Column by column, as glm multiplies.
+Vector apply(const glm::mat3& m, const Vector& v) {
+  const Tag tag;
+  const auto row = [&](int r) {
+    const V sum = hn::Add(hn::Mul(hn::Set(tag, m[0][r]), v.x), hn::Mul(hn::Set(tag, m[1][r]), v.y));
+    return hn::Add(sum, hn::Mul(hn::Set(tag, m[2][r]), v.z));
+  };
+  return {row(0), row(1), row(2)};
+}
+
+V squareInPlane(const V& x, const V& y) {
+  return hn::Add(hn::Mul(x, x), hn::Mul(y, y));
+}
+
+// PixelBound::chordError, step by step.
+V chordError(const PixelMap& map, const Vector& p, const Vector& q, const Vector& offset0,
+             const Vector& offset1) {
+  const Tag tag;
+  const V two = hn::Set(tag, 2.0f), three = hn::Set(tag, 3.0f), factor = hn::Set(tag, PixelMap::kChordFactor);
+  const Vector d0 = apply(map.linear, offset0), d1 = apply(map.linear, offset1);
+  const Vector first{hn::Sub(d1.x, hn::Mul(two, d0.x)), hn::Sub(d1.y, hn::Mul(two, d0.y)),
+                     hn::Sub(d1.z, hn::Mul(two, d0.z))};
+  const Vector second{hn::Sub(d0.x, hn::Mul(two, d1.x)), hn::Sub(d0.y, hn::Mul(two, d1.y)),
+                      hn::Sub(d0.z, hn::Mul(two, d1.z))};
+  if (!map.perspective)
+    return hn::Mul(factor,
+                   hn::Sqrt(hn::Max(squareInPlane(first.x, first.y), squareInPlane(second.x, second.y))));
+  const Vector origin{hn::Set(tag, map.origin.x), hn::Set(tag, map.origin.y), hn::Set(tag, map.origin.z)};
+  const Vector start = add(apply(map.linear, p), origin), end = add(apply(map.linear, q), origin);
+  const Vector way = subtract(end, start);
+  const Vector third{hn::Div(way.x, three), hn::Div(way.y, three), hn::Div(way.z, three)};
+  const Vector control[4] = {start, add(add(start, third), d0), add(subtract(end, third), d1), end};
+  const V nearPlane = hn::Set(tag, map.nearPlane);
+  const V nearest = hn::Min(hn::Min(control[0].z, control[1].z), hn::Min(control[2].z, control[3].z));
+  V largest = hn::Zero(tag);
+  for (const Vector& b : control) {
+    const V inverse = hn::Div(hn::Set(tag, 1.0f), hn::Max(b.z, nearPlane));
+    const V sx = hn::Mul(b.x, inverse), sy = hn::Mul(b.y, inverse);
+    const V one =
+        squareInPlane(hn::Sub(first.x, hn::Mul(first.z, sx)), hn::Sub(first.y, hn::Mul(first.z, sy)));
+    const V other =
+        squareInPlane(hn::Sub(second.x, hn::Mul(second.z, sx)), hn::Sub(second.y, hn::Mul(second.z, sy)));
+    largest = hn::Max(largest, hn::Max(one, other));
+  }
+  return hn::Div(hn::Mul(factor, hn::Sqrt(largest)), hn::Max(nearest, nearPlane));
+}
+
+void errorsOf(const PixelMap& map, const CurveBatch& curves, float* errors) {
+  const Tag tag;
+  for (std::size_t i = 0; i < curves.count; i += hn::Lanes(tag))
+    hn::StoreU(
+        chordError(map, load(curves, 0, i), load(curves, 3, i), load(curves, 6, i), load(curves, 9, i)), tag,
+        errors + i);
+}
+
+}  // namespace limn::silhouette::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace limn::silhouette {
+
+HWY_EXPORT(errorsOf);
+
+void chordErrors(const PixelBound& bound, const CurveBatch& curves, float* errors) {
+  HWY_DYNAMIC_DISPATCH(errorsOf)(bound.map(), curves, errors);
+}
+
+}  // namespace limn::silhouette
+#endif

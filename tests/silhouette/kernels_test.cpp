@@ -1,0 +1,98 @@
+// Vector kernels against their scalar twins, bit for bit on every target.
+#include <gtest/gtest.h>
+
+#include <hwy/targets.h>
+
+#include <array>
+#include <bit>
+#include <random>
+#include <vector>
+
+#include "shapes.h"
+#include "silhouette/alpha_kernel.h"
+#include "silhouette/chord_kernel.h"
+
+namespace limn::silhouette::test {
+namespace {
+
+using glm::vec3;
+
+struct Random {
+  std::mt19937 engine;
+  float next() { return static_cast<float>(engine() % 2000001) / 1000000.0f - 1.0f; }
+  vec3 vector() { return {next(), next(), next()}; }
+};
+
+template <class Body>
+void onEveryTarget(const Body& body) {
+  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
+    SCOPED_TRACE(hwy::TargetName(targets & -targets));
+    hwy::SetSupportedTargetsForTest(targets & -targets);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    body();
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
+}
+
+TEST(AlphaKernel, EveryTargetGivesTheScalarBits) {
+  Random random{std::mt19937(3)};
+  for (int round = 0; round < 40; ++round) {
+    std::vector<float> facings;
+    // Wide, narrow, one-sided, with zeros and ties, and tiny.
+    for (int i = 0; i < 90; ++i) {
+      const float x = random.next();
+      facings.push_back(round % 5 == 0   ? x
+                        : round % 5 == 1 ? 0.3f + 0.1f * x
+                        : round % 5 == 2 ? -0.02f * (1.1f + x)
+                        : round % 5 == 3 ? static_cast<float>(static_cast<int>(4.0f * x)) / 4.0f
+                                         : 1e-38f * x);
+    }
+    std::vector<std::uint16_t> corners(6 * kEdgesPerCluster);
+    for (std::uint16_t& corner : corners)
+      corner = static_cast<std::uint16_t>(random.engine() % facings.size());
+    std::array<float, kEdgesPerCluster> betas{}, bulges{}, expected{}, alphas{};
+    for (std::size_t i = 0; i < kEdgesPerCluster; ++i) {
+      betas[i] = i % 7 == 0 ? 0.0f : std::fabs(random.next());
+      bulges[i] = i % 9 == 0 ? 0.0f : std::fabs(random.next());
+    }
+    const EdgeBlock block{corners.data(), facings.data(), betas.data(), bulges.data()};
+    for (const bool crossing : {false, true}) {
+      const std::uint64_t bends = computeAlphasScalar(block, crossing, 0.1f, expected.data());
+      onEveryTarget([&] {
+        EXPECT_EQ(computeAlphas(block, crossing, 0.1f, alphas.data()), bends);
+        for (std::size_t i = 0; i < kEdgesPerCluster; ++i) {
+          ASSERT_EQ(std::bit_cast<std::uint32_t>(alphas[i]), std::bit_cast<std::uint32_t>(expected[i]))
+              << "round " << round << ", edge " << i;
+          ASSERT_TRUE(alphas[i] >= 0.0f && alphas[i] <= 1.0f);
+        }
+      });
+    }
+  }
+}
+
+TEST(ChordKernel, EveryTargetGivesTheScalarBits) {
+  Random random{std::mt19937(4)};
+  for (const View& view : someViews(2.0f)) {
+    const PixelBound bound(view);
+    for (const std::size_t count : {std::size_t{1}, std::size_t{17}, CurveBatch::kCapacity}) {
+      CurveBatch batch{};
+      std::vector<float> expected;
+      while (batch.count < count) {
+        const vec3 p = 2.0f * random.vector(), q = 2.0f * random.vector();
+        const CurveOffsets d{random.vector(), random.vector()};
+        batch.add(p, q, d);
+        expected.push_back(bound.chordError(p, q, d));
+      }
+      onEveryTarget([&] {
+        std::array<float, CurveBatch::kCapacity> errors;
+        chordErrors(bound, batch, errors.data());
+        for (std::size_t i = 0; i < count; ++i)
+          ASSERT_EQ(std::bit_cast<std::uint32_t>(errors[i]), std::bit_cast<std::uint32_t>(expected[i])) << i;
+      });
+    }
+  }
+}
+
+}  // namespace
+}  // namespace limn::silhouette::test
