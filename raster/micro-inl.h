@@ -49,9 +49,14 @@ class Micro {
     const VF slopeX = hn::Sub(hn::Mul(d1, t.x1), hn::Mul(d2, t.x2)),
              slopeY = hn::Sub(hn::Mul(d2, t.y2), hn::Mul(d1, t.y1));
     hn::Store(t.x1, f, x1_), hn::Store(t.x2, f, x2_), hn::Store(t.y1, f, y1_), hn::Store(t.y2, f, y2_);
-    hn::Store(hn::Set(d, -1), d, id_);
-    hn::Store(hn::Sub(t.px.first, hn::Set(d, tile_.left)), d, left_);
-    hn::Store(hn::Sub(t.py.first, hn::Set(d, tile_.top)), d, top_);
+    const VI left = hn::Sub(t.px.first, hn::Set(d, tile_.left)),
+             top = hn::Sub(t.py.first, hn::Set(d, tile_.top));
+    hn::Store(hn::Add(hn::Mul(top, hn::Set(d, tile_.stride)), left), d, corner_);
+    hn::Store(centerFrom(t.px.first, t.x[0]), f, centerX_);
+    hn::Store(centerFrom(t.py.first, t.y[0]), f, centerY_);
+    MI seen = hn::FirstN(d, 0);
+    listed_ = 0;
+    const VI ramp = hn::Iota(d, 0);
     for (std::size_t s = 0; s < tile_.context->samples.size(); ++s) {
       const SamplePosition at = tile_.context->samples[s];
       const VI ox = hn::Sub(hn::Add(hn::ShiftLeft<kSubpixelBits>(t.px.first), hn::Set(d, at.x)), t.x[0]);
@@ -69,29 +74,51 @@ class Micro {
                                           hn::Mul(t.edgeY[k], hn::Set(d, c * kSubpixels))));
           const MI covered =
               hn::And(hn::And(inRow, atMost(hn::Set(d, c), wide)), hn::Gt(worst, hn::Set(d, -1)));
-          if (hn::AllFalse(d, covered)) continue;
           const VI dx = hn::Add(ox, hn::Set(d, c * kSubpixels));
-          write(covered, hn::Add(zRow, hn::Mul(slopeX, hn::ConvertTo(f, dx))), static_cast<int>(s), c, j);
+          const VF z = hn::Add(zRow, hn::Mul(slopeX, hn::ConvertTo(f, dx)));
+          const auto place =
+              static_cast<std::int32_t>(s << kSampleShift) | j << kRowShift | c << kColumnShift;
+          hn::StoreU(hn::Compress(z, hn::RebindMask(f, covered)), f, depth_ + listed_);
+          hn::StoreU(hn::Compress(hn::Or(ramp, hn::Set(d, place)), covered), d, place_ + listed_);
+          listed_ += hn::CountTrue(d, covered);
+          seen = hn::Or(seen, covered);
         }
       }
     }
+    for (unsigned lanes = bitsOf(seen); lanes != 0; lanes &= lanes - 1)
+      keep(static_cast<std::size_t>(std::countr_zero(lanes)));
+    for (std::size_t i = 0; i < listed_; ++i) write(i);
   }
 
-  // The covered triangles' pixels at (c, j) of their boxes.
-  HWY_INLINE void write(MI covered, VF z, int sample, std::int32_t c, std::int32_t j) {
-    alignas(64) float depth[kLanes];
-    hn::Store(z, F(), depth);
-    for (unsigned left = bitsOf(covered); left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-      const int x = left_[lane] + c, y = top_[lane] + j;
-      const std::size_t o = tile_.offset(sample, x, y);
-      if (depth[lane] < tile_.depth[o]) continue;
-      if (depth[lane] == tile_.depth[o] && !winsTie(lane, tile_.ids[o])) continue;
-      if (id_[lane] < 0) id_[lane] = static_cast<std::int32_t>(keep(lane));
-      tile_.depth[o] = depth[lane];
-      tile_.ids[o] = static_cast<std::uint32_t>(id_[lane]);
-      setPoint(tile_.records[tile_.ids[o]], x, y);
-    }
+  // How far the first pixels' centres are from the anchors.
+  HWY_INLINE static VF centerFrom(VI pixel, VI anchor) {
+    const VI center = hn::Add(hn::ShiftLeft<kSubpixelBits>(pixel), hn::Set(I(), kOneSample[0].x));
+    return hn::ConvertTo(F(), hn::Sub(center, anchor));
+  }
+
+  // One covered sample of the list.
+  HWY_INLINE void write(std::size_t i) {
+    const auto place = static_cast<std::uint32_t>(place_[i]);
+    const std::size_t lane = place & (kLanes - 1), sample = place >> kSampleShift;
+    const std::uint32_t row = (place >> kRowShift) & 3U, column = (place >> kColumnShift) & 3U;
+    const std::size_t pixel =
+        static_cast<std::size_t>(corner_[lane]) + row * static_cast<std::size_t>(tile_.stride) + column;
+    const std::size_t o = sample * tile_.plane + pixel;
+    const float depth = depth_[i];
+    if (depth < tile_.depth[o]) return;
+    if (depth == tile_.depth[o] && !winsTie(lane, tile_.ids[o])) return;
+    tile_.depth[o] = depth;
+    tile_.ids[o] = id_[lane];
+    // Tile::setPoint.
+    const F4 f;
+    const Record& record = tile_.records[id_[lane]];
+    const auto dx = hn::Set(f, centerX_[lane] + static_cast<float>(column * kSubpixels)),
+               dy = hn::Set(f, centerY_[lane] + static_cast<float>(row * kSubpixels));
+    const auto start = hn::Add(hn::Load(f, record.origin), hn::Mul(hn::Load(f, record.slopeY), dy));
+    alignas(16) float value[4];
+    hn::Store(hn::Add(start, hn::Mul(hn::Load(f, record.slopeX), dx)), f, value);
+    for (std::size_t k = 0; k < 3; ++k) tile_.normal[k][pixel] = value[k];
+    if (tile_.context->samples.size() > 1) tile_.centerDepth[pixel] = value[3];
   }
 
   std::uint32_t tagOf(std::size_t lane) const {
@@ -105,39 +132,33 @@ class Micro {
     return cluster_->batch->order(triangle) < tile_.orderOf(tile_.records[other]);
   }
 
-  // Keeps a triangle's record and returns its number.
-  HWY_INLINE std::uint32_t keep(std::size_t lane) {
-    cluster_->setRecord(tagOf(lane), x1_[lane], x2_[lane], y1_[lane], y2_[lane],
-                        tile_.records[tile_.recordCount]);
-    if (tile_.keepsCorners())
-      for (int k = 0; k < 3; ++k)
-        tile_.corners[tile_.recordCount].x[k] = queue_->x[k][first_ + lane],
-        tile_.corners[tile_.recordCount].y[k] = queue_->y[k][first_ + lane];
-    return tile_.recordCount++;
+  // Keeps the record of a triangle that covers a sample.
+  HWY_INLINE void keep(std::size_t lane) {
+    const std::uint32_t id = tile_.recordCount++;
+    id_[lane] = id;
+    cluster_->setRecord(tagOf(lane), x1_[lane], x2_[lane], y1_[lane], y2_[lane], tile_.records[id]);
+    if (!tile_.keepsCorners()) return;
+    Corners& c = tile_.corners[id];
+    for (int k = 0; k < 3; ++k) c.x[k] = queue_->x[k][first_ + lane], c.y[k] = queue_->y[k][first_ + lane];
   }
 
-  // Tile::setPoint.
-  HWY_INLINE void setPoint(const Record& record, int x, int y) {
-    const F4 f;
-    const std::int32_t px = (tile_.left + x) * kSubpixels + kOneSample[0].x,
-                       py = (tile_.top + y) * kSubpixels + kOneSample[0].y;
-    const auto dx = hn::Set(f, static_cast<float>(px - record.x0)),
-               dy = hn::Set(f, static_cast<float>(py - record.y0));
-    const auto start = hn::Add(hn::Load(f, record.origin), hn::Mul(hn::Load(f, record.slopeY), dy));
-    alignas(16) float value[4];
-    hn::Store(hn::Add(start, hn::Mul(hn::Load(f, record.slopeX), dx)), f, value);
-    const std::size_t o = tile_.offset(0, x, y);
-    for (std::size_t i = 0; i < 3; ++i) tile_.normal[i][o] = value[i];
-    if (tile_.context->samples.size() > 1) tile_.centerDepth[o] = value[3];
-  }
+  // A listed sample's place: its triangle's lane, and where in the triangle's box it is.
+  static constexpr int kColumnShift = 4, kRowShift = 6, kSampleShift = 8;
+  static constexpr std::size_t kPixels = (MicroQueue::kReach + 1) * (MicroQueue::kReach + 1);
 
   Tile& tile_;
   const ClusterInTile* cluster_ = nullptr;
   const MicroQueue* queue_ = nullptr;
   std::size_t first_ = 0;
-  // Of the vector of triangles: their plane bases, first pixels, and records, or -1.
-  alignas(64) float x1_[kLanes], x2_[kLanes], y1_[kLanes], y2_[kLanes];
-  alignas(64) std::int32_t left_[kLanes], top_[kLanes], id_[kLanes];
+  // Of the vector of triangles: their plane bases, records, the tile's offsets of their first pixels, and how far
+  // these pixels' centres are from where the planes are anchored.
+  alignas(64) float x1_[kLanes], x2_[kLanes], y1_[kLanes], y2_[kLanes], centerX_[kLanes], centerY_[kLanes];
+  alignas(64) std::int32_t corner_[kLanes];
+  std::uint32_t id_[kLanes];
+  // The samples that they cover.
+  std::size_t listed_ = 0;
+  alignas(64) float depth_[(kPixels * kMaxSamples + 1) * kLanes];
+  alignas(64) std::int32_t place_[(kPixels * kMaxSamples + 1) * kLanes];
 };
 #endif
 

@@ -9,6 +9,9 @@
 #define LIMN_RASTER_POINTS_INL_H_
 #endif
 
+#include <algorithm>
+#include <bit>
+
 #include "raster/lighting-inl.h"
 #include "raster/surface.h"
 #include "raster/texel-inl.h"
@@ -22,6 +25,21 @@ namespace HWY_NAMESPACE {
 /// Left to the definition.
 HWY_INLINE bool isComplex(const Material& m) {
   return m.normalTexture != nullptr || m.emissiveTexture != nullptr;
+}
+
+/// Writes the lanes of a mask to the target; to the others others may write at the same time.
+HWY_INLINE void storePixels(VI color, MI lanes, std::uint8_t* to) {
+  const I d;
+  if constexpr (HWY_TARGET <= HWY_AVX2) {
+    hn::BlendedStore(color, lanes, d, reinterpret_cast<std::int32_t*>(to));
+  } else {
+    alignas(64) std::int32_t pixels[kLanes];
+    hn::Store(color, d, pixels);
+    for (unsigned left = bitsOf(lanes); left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+      std::copy_n(reinterpret_cast<const std::uint8_t*>(pixels + lane), 4, to + 4 * lane);
+    }
+  }
 }
 
 /// Linear colours of points that have one material, `points.base` being what vertex colours and textures make of it.

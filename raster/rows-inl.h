@@ -151,6 +151,7 @@ class Rows {
     for (std::size_t s = 0; s < kSamples; ++s)
       startRows(record, 3, py + samples_[s].y, box.rows, depthStarts_[s]);
     const std::size_t plane = tile_.offset(1, 0, 0);
+    constexpr std::make_index_sequence<kSamples> samples;
     const VI ramp = hn::Iota(d, 0), fine = hn::ShiftLeft<kSubpixelBits>(ramp);
     const auto across = [&](int i, std::int32_t x) {
       return hn::Mul(hn::Set(f, record.slopeX[i]), hn::ConvertTo(f, hn::Add(hn::Set(d, px + x), fine)));
@@ -167,18 +168,18 @@ class Rows {
     for (int column = 0; column < box.columns; column += static_cast<int>(kLanes)) {
       VI e[kSamples][3];
       VF zX[kSamples];
-      for (std::size_t s = 0; s < kSamples; ++s) {
+      forEach(samples, [&](std::size_t s) HWY_ATTR {
         for (int k = 0; k < 3; ++k)
           e[s][k] = hn::Add(hn::Set(d, box.value[s][k] + box.stepX[k] * column),
                             hn::Mul(ramp, hn::Set(d, box.stepX[k])));
         zX[s] = across(3, samples_[s].x + column * kSubpixels);
-      }
+      });
       const std::int32_t center = kOneSample[0].x + column * kSubpixels;
       const VF xX = across(0, center), yX = across(1, center), nX = across(2, center), dX = across(3, center);
       std::size_t o = tile_.offset(0, box.x0 + column, box.y0);
       for (int row = 0; row < rows; ++row, o += stride) {
         MI any = hn::FirstN(d, 0);
-        for (std::size_t s = 0; s < kSamples; ++s) {
+        forEach(samples, [&](std::size_t s) HWY_ATTR {
           float* const depth = depths + o + s * plane;
           std::uint32_t* const id = ids + o + s * plane;
           const VF z = hn::Add(hn::Set(f, depthStarts_[s][row]), zX[s]);
@@ -192,7 +193,7 @@ class Rows {
           any = hn::Or(any, wins);
           e[s][0] = hn::Add(e[s][0], step0), e[s][1] = hn::Add(e[s][1], step1),
           e[s][2] = hn::Add(e[s][2], step2);
-        }
+        });
         const MF points = hn::RebindMask(f, any);
         storeWhere(hn::Add(hn::Set(f, starts_[0][row]), xX), points, f, normalX + o);
         storeWhere(hn::Add(hn::Set(f, starts_[1][row]), yX), points, f, normalY + o);

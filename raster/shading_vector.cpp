@@ -47,7 +47,14 @@ class Shading {
       rayY_ = hn::GetLane(lighting_.rayY(hn::Set(I(), (tile_.top + y) * kSubpixels + kOneSample[0].y)));
       const int wholeBlocks = simple ? tile_.width - tile_.width % static_cast<int>(kLanes) : 0;
       for (int x = 0; x < wholeBlocks; x += static_cast<int>(kLanes)) simpleBlock(x, y);
-      for (int x = wholeBlocks; x < tile_.width; x += static_cast<int>(kLanes)) block(x, y);
+      for (int x = wholeBlocks; x < tile_.width; x += static_cast<int>(kLanes)) {
+        if (samples_ == 1)
+          block<1>(x, y);
+        else if (samples_ == 4)
+          block<4>(x, y);
+        else
+          block<8>(x, y);
+      }
     }
     flush();
     fragments_.finish();
@@ -89,15 +96,19 @@ class Shading {
       push(x, y, seen, true);
   }
 
+  template <std::size_t kSamples>
   HWY_INLINE void block(int x, int y) {
     const I d;
-    const VI ids = idsAt(0, x, y);
+    VI all[kSamples];
+    forEach(std::make_index_sequence<kSamples>(), [&](std::size_t s) HWY_ATTR { all[s] = idsAt(s, x, y); });
+    const VI ids = all[0];
     const MI inside = hn::FirstN(d, static_cast<std::size_t>(tile_.width - x));
     MI whole = inside;  // pixels all of whose samples show the same
-    for (std::size_t s = 1; s < samples_; ++s) whole = hn::And(whole, hn::Eq(ids, idsAt(s, x, y)));
+    forEach(std::make_index_sequence<kSamples>(),
+            [&](std::size_t s) HWY_ATTR { whole = hn::And(whole, hn::Eq(ids, all[s])); });
     if (tile_.overlaid) whole = hn::And(whole, notBlended(x, y));
-    const MI seen = hn::And(whole, hn::Ne(ids, hn::Set(d, -1)));
-    if (!hn::AllTrue(d, seen)) store(hn::Set(d, background_), x, y);
+    const MI nothing = hn::Eq(ids, hn::Set(d, -1)), seen = hn::AndNot(nothing, whole);
+    if (!hn::AllFalse(d, hn::And(nothing, whole))) store(hn::Set(d, background_), x, y);
     MI left = hn::AndNot(whole, inside);
     if (!hn::AllFalse(d, seen)) {
       if (tile_.plainMaterial != nullptr)
@@ -105,16 +116,33 @@ class Shading {
       else
         left = hn::Or(left, pushByMaterial(x, y, ids, seen));
     }
-    if (samples_ > 1 || !hn::AllFalse(d, left)) leave(bitsOf(left), x, y);
+    if (hn::AllFalse(d, left)) return;
+    if (samples_ == 1 || tile_.overlaid || tile_.plainMaterial == nullptr) left = leaveSome(left, x, y);
+    if (!hn::AllFalse(d, left)) fragments_.add(x, y, left, all, pixelAt(x, y));
   }
 
-  // Pixels that a vector cannot handle.
-  void leave(unsigned left, int x, int y) {
-    for (; left != 0; left &= left - 1) {
+  // Leaves to the definition what a vector cannot handle, and returns the others.
+  MI leaveSome(MI pixels, int x, int y) {
+    const I d;
+    alignas(64) std::int32_t lanes[kLanes];
+    hn::Store(hn::VecFromMask(d, pixels), d, lanes);
+    for (unsigned left = bitsOf(pixels); left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
       const bool blended = tile_.overlaid && tile_.isBlended[tile_.offset(0, x + lane, y)] != 0;
-      if (blended || samples_ == 1 || !fragments_.add(x + lane, y)) shadePixelScalar(tile_, x + lane, y);
+      if (samples_ > 1 && !blended && !showsComplex(x + lane, y)) continue;
+      shadePixelScalar(tile_, x + lane, y);
+      lanes[lane] = 0;
     }
+    return hn::Ne(hn::Load(d, lanes), hn::Zero(d));
+  }
+
+  bool showsComplex(int x, int y) const {
+    bool complex = false;
+    for (int s = 0; s < static_cast<int>(samples_); ++s) {
+      const std::uint32_t id = tile_.ids[tile_.offset(s, x, y)];
+      complex |= id != kNoRecord && isComplex(*tile_.surfaceOf(tile_.records[id]).material);
+    }
+    return complex;
   }
 
   MI notBlended(int x, int y) const {
@@ -203,15 +231,9 @@ class Shading {
     const std::uint8_t bits[8] = {static_cast<std::uint8_t>(at.lanes),
                                   static_cast<std::uint8_t>(at.lanes >> 8U)};
     const MI lanes = hn::LoadMaskBits(d, bits);
-    auto* const to = reinterpret_cast<std::int32_t*>(at.to);
-    if (at.overBackground) return hn::StoreU(hn::IfThenElse(lanes, color, hn::Set(d, background_)), d, to);
-    if constexpr (HWY_TARGET <= HWY_AVX2) return hn::BlendedStore(color, lanes, d, to);
-    alignas(64) std::int32_t pixels[kLanes];
-    hn::Store(color, d, pixels);
-    for (unsigned left = at.lanes; left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
-      std::copy_n(reinterpret_cast<const std::uint8_t*>(pixels + lane), 4, at.to + 4 * lane);
-    }
+    if (!at.overBackground) return storePixels(color, lanes, at.to);
+    hn::StoreU(hn::IfThenElse(lanes, color, hn::Set(d, background_)), d,
+               reinterpret_cast<std::int32_t*>(at.to));
   }
 
   // The same for the triangles' own materials; returns the pixels that are left to the definition.

@@ -18,12 +18,12 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
   clusters = c.front.clusterBins().of(index);
   loose = c.front.looseBins().of(index);
   blended = c.front.blendedBins().of(index);
-  const std::size_t samples =
-      c.samples.size() * static_cast<std::size_t>(stride) * static_cast<std::size_t>(tiling.tileHeight);
+  plane = static_cast<std::size_t>(stride) * static_cast<std::size_t>(tiling.tileHeight) + kPlanePadding;
+  const std::size_t samples = c.samples.size() * plane;
   depth.assign(samples, kNoDepth);
   ids.assign(samples, kNoRecord);
-  for (std::vector<float>& plane : normal) plane.resize(samples / c.samples.size());
-  if (c.samples.size() > 1) centerDepth.resize(samples / c.samples.size());
+  for (std::vector<float>& component : normal) component.resize(plane);
+  if (c.samples.size() > 1) centerDepth.resize(plane);
   sampleRange = {kSubpixels, 0};
   for (const SamplePosition at : c.samples) {
     sampleRange.low = std::min({sampleRange.low, at.x, at.y});
@@ -35,7 +35,7 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
   overlaid = !blended.empty() || !lines.empty();
   if (overlaid) {
     colors.resize(samples);
-    isBlended.assign(samples / c.samples.size(), 0);
+    isBlended.assign(plane, 0);
   }
   if (blocks.size() < clusters.size()) blocks.resize(clusters.size());
   surfaces.clear();

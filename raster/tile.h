@@ -75,10 +75,8 @@ class Tile {
   /// Nothing is drawn in it.
   bool isEmpty() const { return clusters.empty() && loose.empty() && !overlaid; }
   std::size_t offset(int sample, int x, int y) const {  ///< x, y from the tile's corner
-    return (static_cast<std::size_t>(sample) * static_cast<std::size_t>(height) +
-            static_cast<std::size_t>(y)) *
-               static_cast<std::size_t>(stride) +
-           static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(sample) * plane +
+           static_cast<std::size_t>(y) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(x);
   }
   /// Where a record's triangle comes from.
   TriangleRef refOf(const Record& record) const;
@@ -126,6 +124,7 @@ class Tile {
   int left = 0, top = 0;           ///< of the tile in the window, pixels
   int width = 0, height = 0;       ///< less at the window's edges
   int stride = 0;                  ///< from row to row; kernels may write whole vectors beyond the width
+  std::size_t plane = 0;           ///< from sample to sample
   std::vector<float> depth;        // by offset()
   std::vector<std::uint32_t> ids;  // record that won the sample
   // At pixel centres, of the record that won a sample of the pixel last: where all samples show the same record, of
@@ -164,6 +163,8 @@ const Attributes& attributesOf(Tile& tile, Record& record);
 
 /// Rows are this much longer than tiles are wide: the longest vector.
 inline constexpr int kRowPadding = 16;
+/// Planes of samples are this much longer than their rows, so that a pixel's samples do not share a set of the cache.
+inline constexpr std::size_t kPlanePadding = 80;
 
 /// Depth and triangle of every sample of the tile.
 void resolveVisibility(Tile& tile);
