@@ -35,8 +35,9 @@ struct RowBox {
 class Rows {
  public:
   explicit Rows(Tile& tile) : tile_(tile), samples_(tile.context->samples) {
-    for (const Light& light : tile.context->frame.lights)
-      keepsDepth_ |= light.kind != Light::Kind::kDirectional && samples_.size() > 1;
+    bool asked = tile.plainMaterial == nullptr;  // textures and vertex colours are divided by it
+    for (const Light& light : tile.context->frame.lights) asked |= light.kind != Light::Kind::kDirectional;
+    keepsDepth_ = asked && samples_.size() > 1;
   }
 
   /// Draws a queue of triangles without slivers whose edge functions fit 32 bits.

@@ -14,6 +14,7 @@
 #define HWY_TARGET_INCLUDE "raster/shading_vector.cpp"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
+#include "raster/attributes-inl.h"
 #include "raster/fragments-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -240,7 +241,6 @@ class Shading {
   MI pushByMaterial(int x, int y, VI ids, MI seen) {
     const I d;
     const F f;
-    const VF one = hn::Set(f, 1.0F), zero = hn::Zero(f);
     const VI px = centersFrom(x);
     const std::int32_t py = (tile_.top + y) * kSubpixels + kOneSample[0].y;
     const std::uint32_t* row = &tile_.ids[tile_.offset(0, x, y)];
@@ -249,8 +249,7 @@ class Shading {
       const Material* material = nullptr;
       MI mine = hn::FirstN(d, 0);
       bool plain = true;
-      Color vertex{one, one, one};
-      FootprintVector footprint{zero, zero, zero, zero, zero, zero};
+      AttributeVector attributes;
       forTriangles(row, ids, todo, [&](Record& record, MI same) {
         const Surface surface = tile_.surfaceOf(record);
         if (material == nullptr) material = surface.material;
@@ -258,7 +257,8 @@ class Shading {
         mine = hn::Or(mine, same);
         if (isComplex(*material) || (material->baseColorTexture == nullptr && !surface.hasColors)) return;
         plain = false;
-        interpolateAttributes(vertex, footprint, record, surface, px, py, hn::RebindMask(f, same));
+        attributes.set(record, attributesOf(tile_, record), material->baseColorTexture != nullptr,
+                       surface.hasColors, py, hn::RebindMask(f, same));
       });
       todo = hn::AndNot(mine, todo);
       if (isComplex(*material)) {
@@ -268,7 +268,10 @@ class Shading {
       setMaterial(*material, plain);
       const std::size_t n = push(x, y, mine);
       if (plain) continue;
-      const Color base = baseOf(*material, vertex, footprint);
+      const bool perspective = context_.map.perspective;
+      const VF q = hn::LoadU(f, depth_ + tile_.offset(0, x, y)), one = hn::Set(f, 1.0F);
+      const VF w = perspective ? hn::Div(one, q) : one;
+      const Color base = baseOf(*material, attributes.color(px, w), attributes.footprint(px, w, perspective));
       hn::Store(base.r, f, points_.base[0] + n);
       hn::Store(base.g, f, points_.base[1] + n);
       hn::Store(base.b, f, points_.base[2] + n);
@@ -286,42 +289,6 @@ class Shading {
       seen = hn::AndNot(same, seen);
       body(tile_.records[id], same);
     }
-  }
-
-  // A triangle's texture coordinates and vertex colours, perspective-correct, where it is seen: Interpolator of
-  // surface.cpp.
-  HWY_INLINE void interpolateAttributes(Color& color, FootprintVector& footprint, Record& record,
-                                        const Surface& surface, VI px, std::int32_t py, MF where) {
-    const I d;
-    const F f;
-    const bool perspective = context_.map.perspective,
-               textured = surface.material->baseColorTexture != nullptr;
-    const VF dx = hn::ConvertTo(f, hn::Sub(px, hn::Set(d, record.x0)));
-    const float rise = static_cast<float>(py - record.y0);
-    const auto plane = [&](float origin, float slopeX, float slopeY) {
-      return hn::Add(hn::Set(f, origin + slopeY * rise), hn::Mul(hn::Set(f, slopeX), dx));
-    };
-    const VF one = hn::Set(f, 1.0F);
-    const VF w =
-        perspective ? hn::Div(one, plane(record.origin[3], record.slopeX[3], record.slopeY[3])) : one;
-    const Attributes& a = attributesOf(tile_, record);
-    const auto value = [&](int i) { return hn::Mul(plane(a.origin[i], a.slopeX[i], a.slopeY[i]), w); };
-    const auto put = [&](VF& to, VF v) { to = hn::IfThenElse(where, v, to); };
-    put(color.r, surface.hasColors ? value(Attributes::kRed) : one);
-    put(color.g, surface.hasColors ? value(Attributes::kGreen) : one);
-    put(color.b, surface.hasColors ? value(Attributes::kBlue) : one);
-    if (!textured) return;
-    const float qx = perspective ? record.slopeX[3] : 0.0F, qy = perspective ? record.slopeY[3] : 0.0F;
-    const VF u = value(Attributes::kU), v = value(Attributes::kV);
-    const VF scale = hn::Mul(w, hn::Set(f, static_cast<float>(kSubpixels)));
-    const auto change = [&](float slope, VF at, float q) {
-      return hn::Mul(hn::Sub(hn::Set(f, slope), hn::Mul(at, hn::Set(f, q))), scale);
-    };
-    put(footprint.u, u), put(footprint.v, v);
-    put(footprint.ux, change(a.slopeX[Attributes::kU], u, qx));
-    put(footprint.vx, change(a.slopeX[Attributes::kV], v, qx));
-    put(footprint.uy, change(a.slopeY[Attributes::kU], u, qy));
-    put(footprint.vy, change(a.slopeY[Attributes::kV], v, qy));
   }
 
   Tile& tile_;

@@ -1,0 +1,91 @@
+// Texture coordinates and vertex colours of a vector of pixels. Definition: Interpolator of surface.cpp.
+//
+// A vector of pixels often shows several triangles. Each of them only puts the numbers of its planes into its lanes;
+// what they amount to is computed once.
+#if defined(LIMN_RASTER_ATTRIBUTES_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef LIMN_RASTER_ATTRIBUTES_INL_H_
+#undef LIMN_RASTER_ATTRIBUTES_INL_H_
+#else
+#define LIMN_RASTER_ATTRIBUTES_INL_H_
+#endif
+
+#include "raster/texel-inl.h"
+#include "raster/tile.h"
+#include "raster/vector-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace limn::raster {
+namespace HWY_NAMESPACE {
+
+#if HWY_TARGET != HWY_SCALAR
+class AttributeVector {
+ public:
+  HWY_INLINE AttributeVector() : x0_(hn::Zero(I())), colored_(hn::FirstN(F(), 0)) {
+    const VF zero = hn::Zero(F());
+    for (Plane* plane : {&u_, &v_, &color_[0], &color_[1], &color_[2]}) plane->start = plane->slopeX = zero;
+    slopeYOfU_ = slopeYOfV_ = qx_ = qy_ = zero;
+  }
+
+  /// Takes a triangle's planes along row `py` (sub-pixels) into the lanes `where`.
+  HWY_INLINE void set(const Record& record, const Attributes& a, bool textured, bool colored, std::int32_t py,
+                      MF where) {
+    const F f;
+    const I d;
+    const auto put = [&](VF& to, float value) { to = hn::IfThenElse(where, hn::Set(f, value), to); };
+    const float rise = static_cast<float>(py - record.y0);
+    const auto putPlane = [&](Plane& to, int i) {
+      put(to.start, a.origin[i] + a.slopeY[i] * rise);
+      put(to.slopeX, a.slopeX[i]);
+    };
+    x0_ = hn::IfThenElse(hn::RebindMask(d, where), hn::Set(d, record.x0), x0_);
+    if (colored) {
+      colored_ = hn::Or(colored_, where);
+      for (int k = 0; k < 3; ++k) putPlane(color_[k], Attributes::kRed + k);
+    }
+    if (!textured) return;
+    putPlane(u_, Attributes::kU), putPlane(v_, Attributes::kV);
+    put(slopeYOfU_, a.slopeY[Attributes::kU]), put(slopeYOfV_, a.slopeY[Attributes::kV]);
+    put(qx_, record.slopeX[3]), put(qy_, record.slopeY[3]);
+  }
+
+  /// At the sub-pixel columns `px`, where the points' distances are `w`; 1 where a triangle has no colours.
+  HWY_INLINE Color color(VI px, VF w) const {
+    const VF one = hn::Set(F(), 1.0F);
+    if (hn::AllFalse(F(), colored_)) return {one, one, one};
+    const VF dx = hn::ConvertTo(F(), hn::Sub(px, x0_));
+    const auto channel = [&](int k) { return hn::IfThenElse(colored_, color_[k].at(dx, w), one); };
+    return {channel(0), channel(1), channel(2)};
+  }
+
+  HWY_INLINE FootprintVector footprint(VI px, VF w, bool perspective) const {
+    const F f;
+    const VF dx = hn::ConvertTo(f, hn::Sub(px, x0_)), zero = hn::Zero(f);
+    const VF u = u_.at(dx, w), v = v_.at(dx, w), qx = perspective ? qx_ : zero, qy = perspective ? qy_ : zero;
+    const VF scale = hn::Mul(w, hn::Set(f, static_cast<float>(kSubpixels)));
+    const auto change = [&](VF slope, VF at, VF q) { return hn::Mul(hn::Sub(slope, hn::Mul(at, q)), scale); };
+    return {u,
+            v,
+            change(u_.slopeX, u, qx),
+            change(v_.slopeX, v, qx),
+            change(slopeYOfU_, u, qy),
+            change(slopeYOfV_, v, qy)};
+  }
+
+ private:
+  // Along the row.
+  struct Plane {
+    VF start, slopeX;
+    HWY_INLINE VF at(VF dx, VF w) const { return hn::Mul(hn::Add(start, hn::Mul(slopeX, dx)), w); }
+  };
+
+  VI x0_;
+  Plane u_, v_, color_[3];
+  VF slopeYOfU_, slopeYOfV_, qx_, qy_;
+  MF colored_;
+};
+#endif
+
+}  // namespace HWY_NAMESPACE
+}  // namespace limn::raster
+HWY_AFTER_NAMESPACE();
+#endif
