@@ -109,8 +109,7 @@ std::uint64_t Batch::order(std::uint32_t triangleOfSet) const {
 
 bool Batch::isReplaced(const Cluster& cluster) const {
   if (isStream || draw->replaced.empty()) return false;
-  // The triangles of a geometry's clusters are in the order of submission.
-  const std::uint32_t first = set->triangles[cluster.firstTriangle], last = first + cluster.triangleCount;
+  const std::uint32_t first = cluster.firstTriangle, last = first + cluster.triangleCount;
   for (std::uint32_t t = first; t < last; t = (t / 64 + 1) * 64) {
     const std::uint64_t from = ~std::uint64_t{0} << (t % 64);
     const std::uint64_t to = last - t / 64 * 64 >= 64 ? 0 : ~std::uint64_t{0} << (last % 64);

@@ -36,12 +36,21 @@ struct Batch {
     const std::uint32_t t = set->triangles[triangleOfSet];
     return isStream ? draw->stream.sourceTriangles[t] : t;
   }
+  // A geometry's clusters hold its triangles in the order of submission, so numbers in the set are those of `replaced`.
+
+  /// Bit i: triangle `triangleOfSet` + i of a geometry with replaced triangles is one of them; 16 bits are known.
+  std::uint32_t replacedFrom(std::uint32_t triangleOfSet) const {
+    const std::size_t t = triangleOfSet;
+    std::uint64_t bits = draw->replaced[t / 64] >> (t % 64);
+    if (t % 64 > 48 && t / 64 + 1 < draw->replaced.size())
+      bits |= draw->replaced[t / 64 + 1] << (64 - t % 64);
+    return static_cast<std::uint32_t>(bits);
+  }
   /// All of a cluster's triangles are replaced.
   bool isReplaced(const Cluster& cluster) const;
   bool isReplaced(std::uint32_t triangleOfSet) const {
     if (isStream || draw->replaced.empty()) return false;
-    const std::uint32_t t = set->triangles[triangleOfSet];
-    return ((draw->replaced[t / 64] >> (t % 64)) & 1U) != 0;
+    return ((draw->replaced[triangleOfSet / 64] >> (triangleOfSet % 64)) & 1U) != 0;
   }
 };
 

@@ -66,7 +66,9 @@ class Fragments {
   /// Shades what is left and writes all pixels that were added.
   void finish() {
     flush();
+    tile_.clock.lap(tile_.statistics.shadingMs);
     for (std::size_t i = 0; i < blocks_; ++i) write(i);
+    tile_.clock.lap(tile_.statistics.resolveMs);
     blocks_ = 0;
   }
 

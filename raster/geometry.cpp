@@ -51,7 +51,8 @@ Geometry::Geometry(const Vertices& vertices, std::span<const std::uint32_t> indi
 
   VertexNumbers numbers;
   numbers.reserve(d.positions.size());
-  ClusterCutter cutter(d.set, d.triangleCount, numbers);
+  ClusterCutter cutter(d.set, d.triangleCount,
+                       numbers);  // in the order of submission, as Batch::isReplaced wants it
   for (const Part& part : parts)
     for (std::uint32_t t = part.firstTriangle; t < part.firstTriangle + part.triangleCount; ++t)
       cutter.add(&indices[3UL * t], t, part.material);

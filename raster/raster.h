@@ -126,7 +126,13 @@ struct Target {
 };
 inline constexpr std::uint32_t kNoId = 0xffffffffu;
 
-/// What a frame took. Times are of the stages' own work summed over the threads.
+/// What a frame took. Times are those of all threads together, waiting included:
+///   transform   vertices, of whole draws that are posed or streamed and of clusters in tiles
+///   binning     culling of clusters, their tiles and those of lines
+///   setup       culling of triangles, their sizes (with Tuning::scalar a part of visibility)
+///   visibility  clearing, edge functions, planes, depth
+///   shading     textures, light, blending, lines, encoding, writing
+///   resolve     sums of the parts of pixels whose samples show several things (with Tuning::scalar a part of shading)
 struct Statistics {
   std::uint64_t trianglesIn = 0;     ///< submitted, after replacing
   std::uint64_t trianglesDrawn = 0;  ///< set up for at least one tile

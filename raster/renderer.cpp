@@ -1,6 +1,5 @@
 #include <atomic>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <vector>
 
@@ -13,12 +12,6 @@
 
 namespace limn::raster {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double msSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 template <class T>
 bool matches(std::span<const T> optional, std::size_t count) {
@@ -133,44 +126,55 @@ void Renderer::draw(const Frame& frame, const Target& target, Statistics* statis
 
   const ScreenMap map(frame.projection);
   const Tiling tiling(map.width, map.height, s.tuning.tileWidth, s.tuning.tileHeight);
-  const auto start = Clock::now();
+  // All threads work together until tiles are drawn.
+  StageClock clock = StageClock::started(statistics != nullptr);
+  double transformMs = 0.0, binningMs = 0.0;
   const std::span<const Batch> batches = s.batches.build(frame, map, s.workers);
-  const double transformMs = msSince(start);
+  clock.lap(transformMs);
   const Kernels kernels = s.tuning.scalar ? scalarKernels() : vectorKernels();
   s.front.run(frame, batches, s.batches.clusterCount(), map, tiling, kernels, s.workers);
   s.lines.run(frame, map, tiling, s.workers);
-  const double binningMs = msSince(start) - transformMs;
+  clock.lap(binningMs);
 
-  const FrameContext context{frame,   target, map, tiling, batches, s.front, samplePattern(frame.samples),
-                             kernels, s.lines};
+  const FrameContext context{frame,
+                             target,
+                             map,
+                             tiling,
+                             batches,
+                             s.front,
+                             samplePattern(frame.samples),
+                             kernels,
+                             s.lines,
+                             statistics != nullptr};
   for (Tile& tile : s.tiles) tile.statistics = {};
   s.workers.forBlocks(tiling.count(), 1, [&](std::size_t index, std::size_t, int slot) {
     Tile& tile = s.tiles[static_cast<std::size_t>(slot)];
-    const auto begin = Clock::now();
     tile.begin(context, index);
     kernels.resolveVisibility(tile);
-    const double visibilityMs = msSince(begin);
+    tile.clock.lap(tile.statistics.visibilityMs);
     blendTriangles(tile);
     drawLines(tile);
     kernels.shadeTile(tile);
     writePlanes(tile);
-    tile.statistics.visibilityMs += visibilityMs;
-    tile.statistics.shadingMs += msSince(begin) - visibilityMs;
+    tile.clock.lap(tile.statistics.shadingMs);
   });
   Tile::levelMemory(s.tiles);
 
   if (statistics == nullptr) return;
   *statistics = {};
-  statistics->transformMs = transformMs;
-  statistics->binningMs = binningMs;
+  statistics->transformMs = s.workers.threads() * transformMs;
+  statistics->binningMs = s.workers.threads() * binningMs;
   statistics->trianglesIn = submittedTriangles(frame);
   statistics->scratchBytes = s.batches.memoryBytes() + s.front.memoryBytes() + s.lines.memoryBytes();
   for (const Tile& tile : s.tiles) {
     statistics->trianglesDrawn += tile.statistics.trianglesDrawn;
     statistics->pixelsShaded += tile.statistics.pixelsShaded;
     statistics->pixelsCovered += tile.statistics.pixelsCovered;
+    statistics->transformMs += tile.statistics.transformMs;
+    statistics->setupMs += tile.statistics.setupMs;
     statistics->visibilityMs += tile.statistics.visibilityMs;
     statistics->shadingMs += tile.statistics.shadingMs;
+    statistics->resolveMs += tile.statistics.resolveMs;
     statistics->scratchBytes += tile.memoryBytes();
   }
 }

@@ -8,6 +8,7 @@ namespace limn::raster {
 
 void Tile::begin(const FrameContext& c, std::size_t index) {
   context = &c;
+  clock = StageClock::started(c.timed);
   const Tiling& tiling = c.tiling;
   const auto columns = static_cast<std::size_t>(tiling.columns);
   left = static_cast<int>(index % columns) * tiling.tileWidth;

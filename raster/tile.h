@@ -11,6 +11,7 @@
 #include "raster/front_end.h"
 #include "raster/lines.h"
 #include "raster/samples.h"
+#include "raster/stage_clock.h"
 #include "raster/transform.h"
 #include "raster/triangle.h"
 
@@ -29,6 +30,7 @@ struct FrameContext {
   std::span<const SamplePosition> samples;
   const Kernels& kernels;
   const LineBins& lines;
+  bool timed;  ///< somebody wants to know how long stages take
 };
 
 inline constexpr int kMaxSamples = 8;
@@ -147,6 +149,7 @@ class Tile {
     std::int32_t low, high;
   } sampleRange{};  ///< least and largest coordinate of the samples within a pixel
   Statistics statistics;
+  StageClock clock;  // runs while the tile is drawn; stages lap their parts of `statistics`
 
  private:
   // To at least `count` elements, and to all that there is room for.

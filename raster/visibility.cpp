@@ -95,7 +95,9 @@ void resolveVisibility(Tile& tile) {
     const Batch& batch = tile.context->batches[visible.batch];
     kernels.transformCluster(batch, batch.set->clusters[visible.cluster], tile.context->map,
                              tile.blocks[entry]);
+    tile.clock.lap(tile.statistics.transformMs);
     drawClusterScalar(tile, entry);
+    tile.clock.lap(tile.statistics.visibilityMs);
   }
   for (const std::uint32_t item : tile.loose) drawLooseScalar(tile, item);
 }

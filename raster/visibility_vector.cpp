@@ -68,11 +68,14 @@ class Visibility {
     const Cluster& cluster = batch.set->clusters[visible.cluster];
     cluster_ = {&batch, &cluster, &tile_.blocks[entry], entry * kClusterTriangles};
     const Material& material = context_.frame.materials[cluster.material];
+    tile_.clock.lap(tile_.statistics.visibilityMs);
     context_.kernels.transformCluster(batch, cluster, context_.map, tile_.blocks[entry]);
+    tile_.clock.lap(tile_.statistics.transformMs);
     if (material.alphaMode == AlphaMode::kMask) return drawClusterScalar(tile_, entry);
     tile_.reserveRecords(kClusterTriangles);
     microQueue_.count = rowQueue_.count = longCount_ = 0;
     for (std::size_t t = 0; t < cluster.triangleCount; t += kLanes) sort(t, material.doubleSided);
+    tile_.clock.lap(tile_.statistics.setupMs);
     micro_.draw(cluster_, microQueue_);
     rows_.draw(cluster_, rowQueue_);
     for (std::size_t i = 0; i < longCount_; ++i) drawLong(long_[i]);
@@ -184,12 +187,10 @@ class Visibility {
   MI notReplaced(std::size_t first) const {
     const I d;
     if (cluster_.batch->isStream || cluster_.batch->draw->replaced.empty()) return hn::FirstN(d, kLanes);
-    alignas(64) std::int32_t keep[kLanes];
-    const std::size_t count = cluster_.batch->set->triangles.size();
-    for (std::size_t i = 0; i < kLanes; ++i)
-      keep[i] =
-          first + i < count && cluster_.batch->isReplaced(static_cast<std::uint32_t>(first + i)) ? 0 : 1;
-    return hn::Ne(hn::Load(d, keep), hn::Zero(d));
+    const std::uint32_t replaced = cluster_.batch->replacedFrom(static_cast<std::uint32_t>(first));
+    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(replaced),
+                                  static_cast<std::uint8_t>(replaced >> 8U)};
+    return hn::Not(hn::LoadMaskBits(d, bits));
   }
 
   void sortLarge(std::size_t t, MI lanes, bool doubleSided) {

@@ -12,13 +12,17 @@
 namespace limn::raster::test {
 namespace {
 
+std::uint32_t below(std::mt19937& random, std::uint32_t count) {
+  return static_cast<std::uint32_t>(random() % count);
+}
+
 // Triangles whose corners are near each other in the order of vertices, some of them degenerate.
 std::vector<std::uint32_t> randomIndices(std::uint32_t seed, std::size_t triangles, std::uint32_t vertices) {
   std::mt19937 random(seed);
   std::vector<std::uint32_t> indices;
   for (std::size_t t = 0; t < triangles; ++t) {
-    const std::uint32_t near = random() % vertices;
-    for (int k = 0; k < 3; ++k) indices.push_back((near + random() % 40) % vertices);
+    const std::uint32_t near = below(random, vertices);
+    for (int k = 0; k < 3; ++k) indices.push_back((near + below(random, 40)) % vertices);
   }
   return indices;
 }
@@ -75,16 +79,20 @@ TEST(Batch, AClusterIsReplacedWhenAllOfItsTrianglesAre) {
   batch.set = &geometry.data().set;
   for (int round = 0; round < 2000; ++round) {
     // Whole runs of bits, and now and then a hole of one.
-    const std::uint32_t first = random() % 300, last = first + random() % (301 - first);
+    const std::uint32_t first = below(random, 300), last = first + below(random, 301 - first);
     for (std::uint64_t& word : replaced) word = 0;
     for (std::uint32_t t = first; t < last; ++t) replaced[t / 64] |= std::uint64_t{1} << (t % 64);
-    const std::uint32_t hole = random() % 300;
+    const std::uint32_t hole = below(random, 300);
     if (round % 2 == 0) replaced[hole / 64] &= ~(std::uint64_t{1} << (hole % 64));
     for (const Cluster& cluster : batch.set->clusters) {
       bool all = true;
       for (std::uint32_t t = 0; t < cluster.triangleCount; ++t)
         all &= batch.isReplaced(cluster.firstTriangle + t);
       ASSERT_EQ(batch.isReplaced(cluster), all) << round;
+      for (std::uint32_t t = cluster.firstTriangle; t + 16 <= cluster.firstTriangle + cluster.triangleCount;
+           ++t)
+        for (std::uint32_t i = 0; i < 16; ++i)
+          ASSERT_EQ((batch.replacedFrom(t) >> i) & 1U, batch.isReplaced(t + i) ? 1U : 0U) << round;
     }
   }
 }
@@ -106,6 +114,26 @@ TEST(Statistics, TrianglesInAreThoseThatAreLeftAndThoseOfTheStream) {
   Statistics statistics;
   scene.draw(renderer, &statistics);
   EXPECT_EQ(statistics.trianglesIn, 100U - 3 - 36 + 2 + 100);
+}
+
+TEST(Statistics, EveryStageTakesTime) {
+  Soup soup;
+  for (int t = 0; t < 2000; ++t) {
+    const auto x = static_cast<float>(t % 50) * 4 - 100, y = static_cast<float>(t / 50) * 4 - 80;
+    soup.triangle({x, y, -500}, {x + 9, y, -500}, {x, y + 9, -500});  // clusters far from the near plane
+  }
+  const Geometry geometry = soup.geometry();
+  Scene scene(pixelProjection(200, 160));
+  scene.draws[0].geometry = &geometry;
+  Renderer renderer(2);
+  Statistics s;
+  scene.draw(renderer, &s);
+  EXPECT_GT(s.transformMs, 0.0);
+  EXPECT_GT(s.setupMs, 0.0);
+  EXPECT_GT(s.binningMs, 0.0);
+  EXPECT_GT(s.visibilityMs, 0.0);
+  EXPECT_GT(s.shadingMs, 0.0);
+  EXPECT_GT(s.resolveMs, 0.0);
 }
 
 TEST(Scratch, EverySlotGetsRoomForTheLargest) {
