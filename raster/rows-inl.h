@@ -65,6 +65,9 @@ class Rows {
   }
 
  private:
+  static constexpr std::size_t kMaxRows = 64;
+  using RowStarts = float[kMaxRows + kLanes];
+
   HWY_INLINE void prepare(const TriangleQueue& queue, std::size_t first) {
     const I d;
     const F f;
@@ -126,15 +129,17 @@ class Rows {
     if (won) ++tile_.recordCount;
   }
 
-  // The rows' starts: origin + slopeY · dy, of plane i at a sample position.
-  HWY_INLINE void startRows(const Record& record, int i, std::int32_t dy, int rows, float* to) const {
+  // The rows' starts, origin + slopeY · dy, of planes [first, last) at a height of the first row.
+  HWY_INLINE static void startRows(const Record& record, int first, int last, std::int32_t dy, int rows,
+                                   RowStarts* to) {
     const I d;
     const F f;
     const VI ramp = hn::ShiftLeft<kSubpixelBits>(hn::Iota(d, 0));
     for (int row = 0; row < rows; row += static_cast<int>(kLanes)) {
       const VF at = hn::ConvertTo(f, hn::Add(hn::Set(d, dy + row * kSubpixels), ramp));
-      hn::Store(hn::Add(hn::Set(f, record.origin[i]), hn::Mul(hn::Set(f, record.slopeY[i]), at)), f,
-                to + row);
+      for (int i = first; i < last; ++i)
+        hn::Store(hn::Add(hn::Set(f, record.origin[i]), hn::Mul(hn::Set(f, record.slopeY[i]), at)), f,
+                  to[i - first] + row);
     }
   }
 
@@ -147,10 +152,12 @@ class Rows {
     const std::int32_t px = (tile_.left + box.x0) * kSubpixels - record.x0,
                        py = (tile_.top + box.y0) * kSubpixels - record.y0;
     const bool keepsDepth = keepsDepth_;
-    const int planes = keepsDepth ? 4 : 3;
-    for (int i = 0; i < planes; ++i) startRows(record, i, py + kOneSample[0].y, box.rows, starts_[i]);
-    for (std::size_t s = 0; s < kSamples; ++s)
-      startRows(record, 3, py + samples_[s].y, box.rows, depthStarts_[s]);
+    // At one sample per pixel, that is the pixel's centre, and its depths are the fourth plane.
+    startRows(record, 0, 4, py + kOneSample[0].y, box.rows, starts_);
+    if (kSamples > 1)
+      for (std::size_t s = 0; s < kSamples; ++s)
+        startRows(record, 3, 4, py + samples_[s].y, box.rows, &depthStarts_[s]);
+    const RowStarts* const depthStarts = kSamples > 1 ? depthStarts_ : starts_ + 3;
     const std::size_t plane = tile_.offset(1, 0, 0);
     constexpr std::make_index_sequence<kSamples> samples;
     const VI ramp = hn::Iota(d, 0), fine = hn::ShiftLeft<kSubpixelBits>(ramp);
@@ -173,7 +180,7 @@ class Rows {
         for (int k = 0; k < 3; ++k)
           e[s][k] = hn::Add(hn::Set(d, box.value[s][k] + box.stepX[k] * column),
                             hn::Mul(ramp, hn::Set(d, box.stepX[k])));
-        zX[s] = across(3, samples_[s].x + column * kSubpixels);
+        zX[s] = across(3, (kSamples > 1 ? samples_[s].x : kOneSample[0].x) + column * kSubpixels);
       });
       const std::int32_t center = kOneSample[0].x + column * kSubpixels;
       const VF xX = across(0, center), yX = across(1, center), nX = across(2, center), dX = across(3, center);
@@ -183,7 +190,7 @@ class Rows {
         forEach(samples, [&](std::size_t s) HWY_ATTR {
           float* const depth = depths + o + s * plane;
           std::uint32_t* const id = ids + o + s * plane;
-          const VF z = hn::Add(hn::Set(f, depthStarts_[s][row]), zX[s]);
+          const VF z = hn::Add(hn::Set(f, depthStarts[s][row]), zX[s]);
           const VF old = hn::LoadU(f, depth);
           const MI covered = hn::Gt(hn::Or(hn::Or(e[s][0], e[s][1]), e[s][2]), hn::Set(d, -1));
           MI wins = hn::And(covered, hn::RebindMask(d, hn::Ge(z, old)));
@@ -206,14 +213,13 @@ class Rows {
     return !hn::AllFalse(d, won);
   }
 
-  static constexpr std::size_t kMaxRows = 64;
-
   Tile& tile_;
   std::span<const SamplePosition> samples_;
   bool keepsDepth_ = false;  // shading asks for the depths of pixel centres, and no sample lies there
   RowBox boxes_[kLanes];     // of a vector of triangles
   alignas(64) float basis_[4][kLanes];
-  alignas(64) float starts_[4][kMaxRows + kLanes], depthStarts_[kMaxSamples][kMaxRows + kLanes];
+  alignas(64) RowStarts starts_[4],
+      depthStarts_[kMaxSamples];  // at pixel centres, of all planes; of depth at the samples
 };
 #endif
 

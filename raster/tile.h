@@ -39,7 +39,7 @@ inline constexpr std::uint32_t kNoRecord = 0xffffffffU;
 /// nothing, even where its depth is rounding noise.
 inline constexpr float kNoDepth = std::numeric_limits<float>::lowest();
 
-/// A triangle that won at least one sample: the planes of its normal · q and depth, and where it comes from.
+/// A triangle that won at least one sample, or a micro triangle that covers one: the planes of its normal · q and depth, and where it comes from.
 struct alignas(64) Record {
   float origin[4], slopeX[4], slopeY[4];
   std::int32_t x0, y0;   ///< where the planes are anchored
