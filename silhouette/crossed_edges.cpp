@@ -15,10 +15,10 @@ std::uint32_t nearestSample(float t, std::uint32_t segments) {
 }
 
 // The parameter of the silhouette point, after it has become a vertex near it if there is one.
-float settled(float t, bool& own, const CrossedEdge& edge, const EdgeCurve& curve,
+float settled(float t, bool& own, const CrossedEdge& edge, const EdgeCurve& curve, const EdgeCurve& bridge,
               const std::array<bool, 2>& open, const PixelBound& bound, float snap) {
   own = true;
-  const glm::vec3 place = curve.point(t);
+  const glm::vec3 place = bridge.point(t);
   for (std::size_t end = 0; end < 2; ++end) {
     if (!open[end]) continue;
     const auto there = static_cast<float>(end);
@@ -28,21 +28,22 @@ float settled(float t, bool& own, const CrossedEdge& edge, const EdgeCurve& curv
   const std::uint32_t sample = nearestSample(t, edge.segments);
   if (sample == 0 || sample == edge.segments) return t;
   const float there = sampleParameter(sample, edge.segments);
-  own = t != there && !(bound.distance(place, curve.place({there, sample}, edge.segments)) <= snap);
+  own = t != there && !(bound.distance(place, curve.sample(sample, edge.segments)) <= snap);
   return own ? t : there;
 }
 
 }  // namespace
 
-void settle(CrossedEdge& edge, const EdgeCurve& curve, const std::array<bool, 2>& open,
-            const PixelBound& bound, float snap) {
+void settle(CrossedEdge& edge, const EdgeCurve& curve, const EdgeCurve& bridge,
+            const std::array<bool, 2>& open, const PixelBound& bound, float snap) {
   for (std::size_t face = 0; face < 2; ++face) {
     if (!edge.crosses[face]) continue;
     if (face == 1 && edge.crosses[0] && edge.parameter[1] == edge.parameter[0] && edge.own[0]) {
       edge.own[1] = false;  // the same point
       continue;
     }
-    edge.parameter[face] = settled(edge.parameter[face], edge.own[face], edge, curve, open, bound, snap);
+    edge.parameter[face] =
+        settled(edge.parameter[face], edge.own[face], edge, curve, bridge, open, bound, snap);
   }
   if (edge.own[0] && edge.own[1] && edge.parameter[0] == edge.parameter[1]) edge.own[1] = false;
 

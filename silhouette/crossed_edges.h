@@ -50,17 +50,15 @@ struct EdgeCurve {
   CurveOffsets offsets;
 
   glm::vec3 point(float t) const { return curvePoint(ends[0], ends[1], offsets, t); }
-  glm::vec3 place(const EdgeVertex& vertex, std::uint32_t segments) const {
-    if (vertex.sample == 0) return point(vertex.t);
-    return polylineVertex(ends[0], ends[1], offsets, static_cast<int>(vertex.sample),
-                          static_cast<int>(segments));
+  glm::vec3 sample(std::uint32_t k, std::uint32_t segments) const {
+    return polylineVertex(ends[0], ends[1], offsets, static_cast<int>(k), static_cast<int>(segments));
   }
 };
 
 /// Lets silhouette points become vertices that are within `snap` pixels of them, and ranks them. An end may take
 /// points when `open[end]`.
-void settle(CrossedEdge& edge, const EdgeCurve& curve, const std::array<bool, 2>& open,
-            const PixelBound& bound, float snap);
+void settle(CrossedEdge& edge, const EdgeCurve& curve, const EdgeCurve& bridge,
+            const std::array<bool, 2>& open, const PixelBound& bound, float snap);
 
 /// The vertices between the ends, in order. Returns their number.
 std::size_t listVertices(const CrossedEdge& edge, EdgeVertexList& list);

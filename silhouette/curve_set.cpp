@@ -18,6 +18,7 @@ void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const Paramet
   vertices.resize(edges.size());
   trust.resize(edges.size());
   always.resize(edges.size());
+  bridged.resize(edges.size());
   crew.forBlocks(edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
       const Edge& edge = edges[e];
@@ -28,6 +29,8 @@ void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const Paramet
       always[e] = bends && (edge.isFeature() || edge.boundary) ? 1 : 0;
       const bool doubtful = parameters.robust && !edge.isFeature() && !edge.nonManifold;
       trust[e] = doubtful ? robust_.factors(edge) : std::array{1.0f, 1.0f};
+      // Where normals are not believed at all the mesh stays as it is, to the last bit.
+      bridged[e] = edge.nonManifold || (trust[e][0] == 0.0f && trust[e][1] == 0.0f) ? 0 : 1;
     }
   });
   faceNormals.resize(mesh.triangleCount());

@@ -19,6 +19,7 @@ struct CurveSet {
   std::vector<std::array<float, 2>> trust;  ///< in the ends of bridges, 0 … 1: robust_ends.h
   std::vector<std::uint8_t> always;         ///< edges that are sampled from every viewpoint
   std::vector<glm::vec3> faceNormals;       ///< unit; zero for degenerate triangles
+  std::vector<std::uint8_t> bridged;        ///< edges that may have silhouette points
   Blocking blocking;
 
   void prepare(const Mesh& mesh, const Topology& topology, const Parameters& parameters, const Crew& crew);

@@ -13,6 +13,8 @@ using glm::vec3;
 
 constexpr std::size_t kEdgesPerBlock = 4096;
 constexpr float kLimit = 1.25f;        // of an end's offset to the other's
+constexpr float kLineNone = 0.035f;    // sines of the angle between the normals: where their planes' line
+constexpr float kLineWhole = 0.17f;    // is not believed (2 degrees), and where it alone is (10 degrees)
 constexpr float kSharpTurn = 0.9f;     // cosine: a polyline that turns more is cut,
 constexpr float kSharpestTurn = 0.5f;  // unless it turns everywhere so, as a coarse circle does, up to this
 constexpr float kRegularTurn = 0.4f;   // of 1 - cosine: what both points beside it must have
@@ -48,6 +50,7 @@ struct FeatureGraph {
     return dot(to, on) / std::sqrt(dot(to, to) * dot(on, on));
   }
   bool isInside(std::uint32_t point) const;
+  vec3 circleOffset(std::uint32_t e, std::uint32_t point) const;
   vec3 endOffset(std::uint32_t e, std::uint32_t point) const;
 };
 
@@ -63,15 +66,35 @@ bool FeatureGraph::isInside(std::uint32_t point) const {
   return true;
 }
 
-// What the curve adds to a third of the edge at an end; zero at corners, open ends and cuts.
-vec3 FeatureGraph::endOffset(std::uint32_t e, std::uint32_t point) const {
-  const Edge& edge = topology.edges()[e];
-  if (!edge.feature[edge.point[0] == point ? 0 : 1] || !isInside(point)) return vec3(0.0f);
+// What an arc that leaves along the unit `tangent` adds to a third of the edge: (L). Steeper than 60 degrees it shrinks
+// with its projection.
+vec3 arcOffset(const vec3& on, const vec3& tangent) {
+  const float length = glm::length(on), cosine = dot(tangent, on) / length;
+  return (2.0f * length * std::min(1.0f, 2.0f * cosine) / (1.0f + std::max(cosine, 0.5f)) * tangent - on) /
+         3.0f;
+}
+
+// By the positions of the polyline; zero at corners, open ends and cuts.
+vec3 FeatureGraph::circleOffset(std::uint32_t e, std::uint32_t point) const {
+  if (!isInside(point)) return vec3(0.0f);
   const Meeting& meeting = meetings[point];
   const vec3 on = awayFrom(e, point), to = -awayFrom(meeting.edges[meeting.edges[0] == e ? 1 : 0], point);
-  const vec3 tangent = glm::normalize(circleTangent(to, on));
-  const float length = glm::length(on);
-  return (2.0f * length / (1.0f + dot(tangent, on) / length) * tangent - on) / 3.0f;  // (L)
+  return arcOffset(on, glm::normalize(circleTangent(to, on)));
+}
+
+// By the line in which the tangent planes of both sides meet, where they do; else by the positions.
+vec3 FeatureGraph::endOffset(std::uint32_t e, std::uint32_t point) const {
+  const Edge& edge = topology.edges()[e];
+  const std::size_t end = edge.point[0] == point ? 0 : 1;
+  if (!edge.feature[end]) return vec3(0.0f);
+  const EdgeVertices v = edgeVertices(mesh, edge);
+  const vec3 on = awayFrom(e, point), line = glm::cross(mesh.normals[v[1][end]], mesh.normals[v[0][end]]);
+  const float sine = glm::length(line), weight = smoothStep(kLineNone, kLineWhole, sine);
+  vec3 offset(0.0f);
+  if (weight > 0.0f)
+    offset = weight * arcOffset(on, (dot(line, on) < 0.0f ? -1.0f / sine : 1.0f / sine) * line);
+  if (weight < 1.0f) offset += (1.0f - weight) * circleOffset(e, point);
+  return offset;
 }
 
 // An end does not bend much more than the other, nor the other way; with a straight one it is straight.

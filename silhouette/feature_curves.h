@@ -1,8 +1,10 @@
 // Feature edges as smooth curves, from every viewpoint.
 //
 // Based on: L. Wang et al., "Silhouette Smoothing for Real-Time Rendering of Mesh Surfaces", section III.A.
-// Differs in: the circle's tangent has squares where the paper prints first powers; a polyline is cut where it
-// turns sharply; at cuts and open ends the tangent is the chord's instead of the circle's: where a line meets
+// Differs in: where the normals of the two sides differ by more than a few degrees the tangent is the line in which
+// their planes meet, as in C. Dyken, M. Reimers, 2004, (8): it needs no neighbours, and is the true one where normals are
+// those of a finer surface. Else it is the circle's, with squares where the paper prints first powers; a polyline is
+// then cut where it turns sharply, and at cuts and open ends the tangent is the chord's: where a line meets
 // an arc, the circle takes the short chord's direction and bends the long one. And the ends of an edge limit
 // each other, so that a circle's arcs stay and a straight edge beside an arc stays straight.
 #pragma once

@@ -23,6 +23,9 @@ constexpr float kTiltOnset = 0.35f;
 constexpr float kTiltWidth = 0.25f;
 constexpr float kOnsetPerDeviation = 4.0f;
 constexpr float kDeviationMost = 0.2f;
+constexpr float kEvidenceNone = 0.6f;  // ρ
+constexpr float kEvidenceFull = 0.9f;
+constexpr std::size_t kEdgesPerBlock = 4096;
 
 // The angle between two vectors within 7e-5 (Abramowitz & Stegun 4.4.45): a weight, not a measurement.
 float angleBetween(const vec3& a, const vec3& b) {
@@ -58,6 +61,36 @@ void RobustEnds::prepare(const Mesh& mesh, const Topology& topology, const Crew&
     ringNormals_[topology.points()[mesh.indices[side]]] +=
         angleBetween(next, before) * faceNormals_[side / 3];
   }
+  findTrust(crew);
+}
+
+// Sums by blocks of edges, joined in order. A vertex counts once for each of its edges.
+void RobustEnds::findTrust(const Crew& crew) {
+  const std::vector<Edge>& edges = topology_->edges();
+  isSmooth_.assign(topology_->pointCount(), 1);
+  for (const Edge& edge : edges)
+    if (edge.boundary || edge.isFeature()) isSmooth_[edge.point[0]] = isSmooth_[edge.point[1]] = 0;
+  evidence_.assign((edges.size() + kEdgesPerBlock - 1) / kEdgesPerBlock, {});
+  crew.forBlocks(edges.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
+    Evidence& sum = evidence_[begin / kEdgesPerBlock];
+    for (std::size_t e = begin; e < end; ++e) {
+      const Edge& edge = edges[e];
+      if (isSmooth_[edge.point[0]] == 0 || isSmooth_[edge.point[1]] == 0) continue;
+      const std::array<std::uint32_t, 2> ends = edgeVertices(mesh_, edge)[0];
+      const vec3 along = unit(mesh_.positions[ends[1]] - mesh_.positions[ends[0]]);
+      sum.differences += std::fabs(dot(along, mesh_.normals[ends[0]] + mesh_.normals[ends[1]]));
+      sum.deviations += deviation(ends[0]) + deviation(ends[1]);
+    }
+  });
+  Evidence all;
+  for (const Evidence& sum : evidence_) {
+    all.deviations += sum.deviations;
+    all.differences += sum.differences;
+  }
+  const bool doubtful = all.deviations < kEvidenceFull * all.differences;
+  trust_ = doubtful ? smoothStep(kEvidenceNone, kEvidenceFull,
+                                 static_cast<float>(all.deviations / all.differences))
+                    : 1.0f;
 }
 
 // Sine of the angle between a vertex's normal and that of its ring of faces.
@@ -98,6 +131,8 @@ std::array<float, 2> RobustEnds::factors(const Edge& edge) const {
   const float deviating = std::min(0.5f * (deviation(ends[0]) + deviation(ends[1])), kDeviationMost);
   const float onset = kTiltOnset + kOnsetPerDeviation * deviating;
   float common = 1.0f - smoothStep(onset, onset + kTiltWidth, std::max(std::fabs(hi), std::fabs(hj)));
+
+  common *= trust_;
 
   vec3 offset;
   const float bulge = (hi + hj) / 8.0f;

@@ -120,6 +120,7 @@ struct Pass {
   void collect(std::size_t items, std::vector<T>& out, const Count& count, const Fill& fill);
   std::uint32_t steps(const vec3& p, const vec3& q, const CurveOffsets& offsets);
   EdgeCurve curveOf(const CrossedEdge& record) const;
+  EdgeCurve bridgeOf(const CrossedEdge& record) const;
   SideView sideOf(std::uint32_t triangle, std::size_t side) const;
   std::uint32_t drawnVertex(std::uint32_t v) const {  // of a vertex of the mesh
     return scratch.loweredOf[v] == kNone ? v : firstNew() + scratch.loweredOf[v];
@@ -178,14 +179,15 @@ void Pass::findEdges() {
   const RingTest ring{mesh, topology, prepared, view, scratch.visible};
   const std::vector<Edge>& edges = topology.edges();
   scratch.alphas.resize(edges.size());
-  const auto wanted = [&](std::size_t e) -> std::uint32_t { return scratch.alphas[e] > 0.0f ? 1 : 0; };
+  const auto wanted = [&](std::size_t e) -> std::uint32_t {
+    const EdgeVertices& v = prepared.vertices[e];
+    const bool crossed = scratch.visible[v[0][0]] != scratch.visible[v[0][1]] ||
+                         scratch.visible[v[1][0]] != scratch.visible[v[1][1]];
+    return scratch.alphas[e] > 0.0f || (crossed && prepared.bridged[e] != 0) ? 1 : 0;
+  };
   crew.forBlocks(edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) {
-      const EdgeVertices& v = prepared.vertices[e];
-      const bool crossed = scratch.visible[v[0][0]] != scratch.visible[v[0][1]] ||
-                           scratch.visible[v[1][0]] != scratch.visible[v[1][1]];
-      const bool whole = prepared.always[e] != 0 || (crossed && !edges[e].nonManifold);
-      scratch.alphas[e] = whole ? 1.0f : ring.alpha(static_cast<std::uint32_t>(e));
+      scratch.alphas[e] = prepared.always[e] != 0 ? 1.0f : ring.alpha(static_cast<std::uint32_t>(e));
     }
   });
   collect(edges.size(), scratch.edges, wanted, [&](std::size_t e, std::uint32_t at) {
@@ -214,7 +216,7 @@ CrossedEdge Pass::crossedEdge(std::uint32_t e) {
       record.parameter[face] = contourParameter(view, {mesh.positions[ends[0]], mesh.positions[ends[1]]},
                                                 {mesh.normals[ends[0]], mesh.normals[ends[1]]});
   }
-  if (prepared.always[e] == 0 && (record.crosses[0] || record.crosses[1])) return record;
+  if (record.alpha == 0.0f) return record;
   const EdgeCurve curve = curveOf(record);
   record.segments = steps(curve.ends[0], curve.ends[1], curve.offsets);
   return record;
@@ -272,13 +274,14 @@ SegmentEnd Pass::segmentEnd(const SideView& side) const {
   const vec3 unit = size2 > 1e-12f ? normal / std::sqrt(size2)
                                    : prepared.faceNormals[topology.edges()[e].faces[side.face].triangle];
   const std::array<float, 2>& trust = prepared.trust[e];
-  return {curveOf(*side.edge).point(t), unit, (1.0f - t) * trust[0] + t * trust[1]};
+  return {bridgeOf(*side.edge).point(t), unit, (1.0f - t) * trust[0] + t * trust[1]};
 }
 
 // Every point of a concave segment's triangle feels its plane.
 void Pass::addPlanes(std::uint32_t triangle, const Segment& segment) {
   const SegmentEnd &first = segment.ends[0], &last = segment.ends[1];
-  const float strength = concavity(last.place - first.place, first.normal, last.normal);
+  const float strength =
+      std::min(first.trust, last.trust) * concavity(last.place - first.place, first.normal, last.normal);
   if (!(strength > 0.0f)) return;
   const vec3 normal = glm::normalize(first.normal + last.normal);
   const vec3 middle = curvePoint(first.place, last.place, segment.offsets, 0.5f);
@@ -336,7 +339,7 @@ void Pass::placeEdges() {
       const std::array<std::uint32_t, 2>& ends = prepared.vertices[scratch.edges[k].edge][0];
       const std::array<bool, 2> open{scratch.loweredOf[ends[0]] == kNone,
                                      scratch.loweredOf[ends[1]] == kNone};
-      settle(scratch.edges[k], curveOf(scratch.edges[k]), open, bound, snap);
+      settle(scratch.edges[k], curveOf(scratch.edges[k]), bridgeOf(scratch.edges[k]), open, bound, snap);
     }
   });
   auto vertices = static_cast<std::uint32_t>(stream.positions.size());
@@ -358,7 +361,8 @@ void Pass::emitEdge(const CrossedEdge& record) {
   EdgeVertexList list;
   const std::size_t count = listVertices(record, list);
   for (std::uint32_t k = 0; k < count; ++k) {
-    const vec3 position = curve.place(list[k], record.segments);
+    const vec3 position = list[k].sample == 0 ? bridgeOf(record).point(list[k].t)
+                                              : curve.sample(list[k].sample, record.segments);
     for (std::uint32_t face = 0; face < (record.seam ? 2u : 1u); ++face) {
       const Side& side = edge.faces[face];
       const float along = edge.runsBack(face) ? 1.0f - list[k].t : list[k].t;
@@ -520,6 +524,13 @@ std::uint32_t Pass::steps(const vec3& p, const vec3& q, const CurveOffsets& offs
   return count;
 }
 
+// The curve that silhouette points lie on.
+EdgeCurve Pass::bridgeOf(const CrossedEdge& record) const {
+  const std::array<std::uint32_t, 2>& ends = prepared.vertices[record.edge][0];
+  return {{mesh.positions[ends[0]], mesh.positions[ends[1]]}, prepared.curves[record.edge]};
+}
+
+// The curve that is sampled.
 EdgeCurve Pass::curveOf(const CrossedEdge& record) const {
   const std::array<std::uint32_t, 2>& ends = prepared.vertices[record.edge][0];
   const CurveOffsets& offsets = prepared.curves[record.edge];
