@@ -1,5 +1,9 @@
 #include "silhouette/curve_set.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
 #include "silhouette/face_normal.h"
 #include "silhouette/feature_curves.h"
 
@@ -12,33 +16,56 @@ constexpr std::size_t kItemsPerBlock = 4096;
 
 void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const Parameters& parameters,
                        const Crew& crew) {
-  const std::vector<Edge>& edges = topology.edges();
+  const std::size_t edges = topology.edges().size();
   computeEdgeCurves(mesh, topology, {Tangents::kCircular, parameters.robust}, crew, robust_, curves);
   computeFeatureCurves(mesh, topology, crew, curves);
-  vertices.resize(edges.size());
-  trust.resize(edges.size());
-  always.resize(edges.size());
-  bridged.resize(edges.size());
-  crew.forBlocks(edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) {
-      const Edge& edge = edges[e];
-      vertices[e] = edgeVertices(mesh, edge);
-      if ((edge.isFeature() && !parameters.features) || (edge.boundary && !parameters.boundaries))
-        curves[e] = {};
-      const bool bends = curves[e] != CurveOffsets{};
-      always[e] = bends && (edge.isFeature() || edge.boundary) ? 1 : 0;
-      const bool doubtful = parameters.robust && !edge.isFeature() && !edge.nonManifold;
-      trust[e] = doubtful ? robust_.factors(edge) : std::array{1.0f, 1.0f};
-      // Where normals are not believed at all the mesh stays as it is, to the last bit.
-      bridged[e] = edge.nonManifold || (trust[e][0] == 0.0f && trust[e][1] == 0.0f) ? 0 : 1;
-    }
+  vertices.resize(edges);
+  links.resize(edges);
+  trust.resize(edges);
+  crew.forBlocks(edges, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) linkEdge(e, mesh, topology, parameters);
   });
-  faceNormals.resize(mesh.triangleCount());
-  crew.forBlocks(faceNormals.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t)
-      faceNormals[t] = topology.isDegenerate(t) ? glm::vec3(0.0f) : faceNormal(mesh, t);
-  });
+  computeFaceNormals(mesh, topology, crew, faceNormals);
+  spread(mesh, crew);
   blocking.prepare(mesh, topology);
+}
+
+void CurveSet::linkEdge(std::size_t e, const Mesh& mesh, const Topology& topology,
+                        const Parameters& parameters) {
+  const Edge& edge = topology.edges()[e];
+  vertices[e] = edgeVertices(mesh, edge);
+  if ((edge.isFeature() && !parameters.features) || (edge.boundary && !parameters.boundaries)) curves[e] = {};
+  const bool doubtful = parameters.robust && !edge.isFeature() && !edge.nonManifold;
+  trust[e] = doubtful ? robust_.factors(edge) : std::array{1.0f, 1.0f};
+  const bool bends = curves[e] != CurveOffsets{}, smooth = !edge.isFeature() && !edge.boundary;
+  const std::uint32_t face = edge.faces[0].triangle;
+  EdgeLink& link = links[e];
+  link.faces = {face, edge.boundary ? face : edge.faces[1].triangle};
+  link.ends = vertices[e][0];
+  link.always = bends && !smooth;
+  link.mayBend = bends && smooth;
+  // Where normals are not believed at all the mesh stays as it is, to the last bit.
+  link.bridged = !edge.nonManifold && (trust[e][0] != 0.0f || trust[e][1] != 0.0f);
+  link.seam = vertices[e][0] != vertices[e][1];
+}
+
+void CurveSet::spread(const Mesh& mesh, const Crew& crew) {
+  corners.resize(mesh.positions.size());
+  planes.resize(mesh.triangleCount());
+  crew.forBlocks(mesh.positions.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) corners.set(v, mesh.positions[v], mesh.normals[v]);
+  });
+  crew.forBlocks(mesh.triangleCount(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      planes.set(t, mesh.positions[mesh.indices[3 * t]], faceNormals[t]);
+  });
+  glm::vec3 low(std::numeric_limits<float>::infinity()), high(-low);
+  for (const glm::vec3& p : mesh.positions) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  middle = mesh.positions.empty() ? glm::vec3(0.0f) : 0.5f * (low + high);
+  radius = mesh.positions.empty() ? 0.0f : 0.5f * glm::length(high - low);
 }
 
 }  // namespace limn::silhouette

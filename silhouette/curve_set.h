@@ -8,23 +8,60 @@
 
 #include "silhouette/blocking.h"
 #include "silhouette/edge_curves.h"
+#include "silhouette/facing_kernel.h"
 #include "silhouette/method.h"
 #include "silhouette/robust_ends.h"
 
 namespace limn::silhouette {
 
+/// Points and normals in structure-of-arrays form.
+class PointNormals {
+ public:
+  void resize(std::size_t count) { numbers_.resize(6 * (count_ = count)); }
+  void set(std::size_t i, const glm::vec3& p, const glm::vec3& n) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      numbers_[axis * count_ + i] = p[static_cast<int>(axis)];
+      numbers_[(3 + axis) * count_ + i] = n[static_cast<int>(axis)];
+    }
+  }
+  VertexArrays arrays() const {
+    const float* x = numbers_.data();
+    return {x, x + count_, x + 2 * count_, x + 3 * count_, x + 4 * count_, x + 5 * count_};
+  }
+
+ private:
+  std::vector<float> numbers_;
+  std::size_t count_ = 0;
+};
+
+/// What is looked at of every edge in every view.
+struct EdgeLink {
+  std::array<std::uint32_t, 2> faces{};  ///< the one twice on a boundary
+  std::array<std::uint32_t, 2> ends{};   ///< vertices of faces[0]
+  bool always = false;                   ///< sampled from every viewpoint
+  bool bridged = false;                  ///< may have silhouette points
+  bool mayBend = false;                  ///< smooth, with a curve: ring.h
+  bool seam = false;                     ///< the faces have vertices of their own
+};
+
 struct CurveSet {
-  std::vector<EdgeVertices> vertices;       ///< of every edge
+  std::vector<EdgeVertices> vertices;  ///< of every edge
+  std::vector<EdgeLink> links;         ///< likewise
+  PointNormals corners;                ///< of the mesh's vertices
+  PointNormals planes;                 ///< of its triangles: a corner, the unit normal
+  glm::vec3 middle{0.0f};              ///< of the mesh, and how far it reaches from there
+  float radius = 0;
   std::vector<CurveOffsets> curves;         ///< bridges and feature curves; zero where an edge stays straight
   std::vector<std::array<float, 2>> trust;  ///< in the ends of bridges, 0 … 1: robust_ends.h
-  std::vector<std::uint8_t> always;         ///< edges that are sampled from every viewpoint
   std::vector<glm::vec3> faceNormals;       ///< unit; zero for degenerate triangles
-  std::vector<std::uint8_t> bridged;        ///< edges that may have silhouette points
   Blocking blocking;
 
   void prepare(const Mesh& mesh, const Topology& topology, const Parameters& parameters, const Crew& crew);
 
  private:
+  void linkEdge(std::size_t e, const Mesh& mesh, const Topology& topology, const Parameters& parameters);
+  void spread(const Mesh& mesh, const Crew& crew);
+
   RobustEnds robust_;
 };
 

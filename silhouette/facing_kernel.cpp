@@ -12,7 +12,30 @@ HWY_BEFORE_NAMESPACE();
 namespace limn::silhouette::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// One vector of vertices at a time. Sums are in the order of the scalar twin, and no products are fused.
+// ⟨n, v⟩ of one vector of vertices. Sums are in the order of the scalar twins, and no products are fused.
+void heights(const glm::vec3& eye, bool perspective, const VertexArrays& vertices, std::size_t count,
+             float* out) {
+  const hn::ScalableTag<float> tag;
+  using V = hn::Vec<decltype(tag)>;
+  const std::size_t lanes = hn::Lanes(tag);
+  const V ex = hn::Set(tag, eye.x), ey = hn::Set(tag, eye.y), ez = hn::Set(tag, eye.z);
+  std::size_t i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    V x = ex, y = ey, z = ez;
+    if (perspective) {
+      x = hn::Sub(ex, hn::LoadU(tag, vertices.x + i));
+      y = hn::Sub(ey, hn::LoadU(tag, vertices.y + i));
+      z = hn::Sub(ez, hn::LoadU(tag, vertices.z + i));
+    }
+    hn::StoreU(hn::Add(hn::Add(hn::Mul(x, hn::LoadU(tag, vertices.nx + i)),
+                               hn::Mul(y, hn::LoadU(tag, vertices.ny + i))),
+                       hn::Mul(z, hn::LoadU(tag, vertices.nz + i))),
+               tag, out + i);
+  }
+  computeHeightsScalar(eye, perspective, vertices.from(i), count - i, out + i);
+}
+
+// One vector of vertices at a time, likewise.
 void facings(const glm::vec3& eye, bool perspective, const VertexArrays& vertices, std::size_t count,
              float* out) {
   const hn::ScalableTag<float> tag;
@@ -34,9 +57,7 @@ void facings(const glm::vec3& eye, bool perspective, const VertexArrays& vertice
     const V facing = hn::Div(product, hn::Sqrt(length2));
     hn::StoreU(hn::IfThenElse(hn::Gt(length2, zero), facing, zero), tag, out + i);
   }
-  const VertexArrays rest{vertices.x + i,  vertices.y + i,  vertices.z + i,
-                          vertices.nx + i, vertices.ny + i, vertices.nz + i};
-  computeFacingsScalar(eye, perspective, rest, count - i, out + i);
+  computeFacingsScalar(eye, perspective, vertices.from(i), count - i, out + i);
 }
 
 }  // namespace limn::silhouette::HWY_NAMESPACE
@@ -46,6 +67,22 @@ HWY_AFTER_NAMESPACE();
 namespace limn::silhouette {
 
 HWY_EXPORT(facings);
+HWY_EXPORT(heights);
+
+void computeHeights(const glm::vec3& eye, bool perspective, const VertexArrays& vertices, std::size_t count,
+                    float* out) {
+  HWY_DYNAMIC_DISPATCH(heights)(eye, perspective, vertices, count, out);
+}
+
+void computeHeightsScalar(const glm::vec3& eye, bool perspective, const VertexArrays& vertices,
+                          std::size_t count, float* out) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = perspective ? eye.x - vertices.x[i] : eye.x;
+    const float y = perspective ? eye.y - vertices.y[i] : eye.y;
+    const float z = perspective ? eye.z - vertices.z[i] : eye.z;
+    out[i] = x * vertices.nx[i] + y * vertices.ny[i] + z * vertices.nz[i];
+  }
+}
 
 void computeFacings(const glm::vec3& eye, bool perspective, const VertexArrays& vertices, std::size_t count,
                     float* facings) {

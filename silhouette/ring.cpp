@@ -14,22 +14,31 @@ using glm::dot;
 using glm::vec3;
 
 constexpr float kBeta = 0.02f;   // of (2): narrow, what matters is the outline
-constexpr float kFacing = 0.2f;  // sine of the angle from the contour at which a corner's cover is over
-// Edge lengths by which the edge must pass what covers it to count, and to count wholly. Its curve begins late, as every
-// convex smooth shape has such edges; its chord, which would hide a concave segment, early.
+constexpr float kFacing = 0.2f;  // sine of the angle from the contour at which a
+                                 // corner's cover is over
+// Edge lengths by which the edge must pass what covers it to count, and to count wholly. Its curve begins late,
+// as every convex smooth shape has such edges; its chord, which would hide a concave segment, early.
 constexpr float kCurveBehind = 0.01f, kCurveOut = 0.06f;
 constexpr float kChordBehind = -0.02f, kChordOut = 0.01f;
 
 }  // namespace
 
-// The unit normal's facing, independent of the distance.
-float RingTest::facingOf(std::uint32_t vertex) const {
-  const vec3 v = towardsEye(view, mesh.positions[vertex]);
-  const float length2 = dot(v, v);
-  return length2 > 0.0f ? dot(v, mesh.normals[vertex]) / std::sqrt(length2) : 0.0f;
+float RingTest::largestProduct() const {
+  float distance = 1.0f;
+  if (view.projection.perspective) distance = glm::length(view.eye - curves.middle) + curves.radius;
+  return 1.01f * kBeta * distance * distance;  // roundings are far below a hundredth of β
 }
 
-// How far the middle of the edge, curved or straight, is outside the tangent plane at a place on the contour: 0 … 1.
+// How near a corner is to the contour: 1 there, 0 from kFacing on.
+float RingTest::coverOf(std::uint32_t corner) const {
+  const vec3 v = towardsEye(view, mesh.positions[corner]);
+  const float length2 = dot(v, v), height = heights[corner];
+  if (!(height * height < kFacing * kFacing * length2)) return 0.0f;
+  return 1.0f - smoothStep(0.0f, kFacing, std::abs(height) / std::sqrt(length2));
+}
+
+// How far the middle of the edge, curved or straight, is outside the tangent plane at a place on the contour: 0
+// … 1.
 float RingTest::standsOut(std::uint32_t e, const vec3& place, const vec3& normal) const {
   const float size2 = dot(normal, normal);
   if (!(size2 > 0.0f)) return 1.0f;
@@ -47,10 +56,10 @@ float RingTest::exposed(std::uint32_t e, const Side& face) const {
   const std::uint32_t first = 3 * face.triangle;
   vec3 middle(0.0f), normal(0.0f);
   float least = 1.0f;
-  int crossings = 0;
+  int ends = 0;
   for (std::uint32_t k = 0; k < 3; ++k) {
     const std::uint32_t corner = mesh.indices[first + k];
-    const float covered = 1.0f - smoothStep(0.0f, kFacing, std::abs(facingOf(corner)));
+    const float covered = coverOf(corner);
     if (covered > 0.0f)
       least = std::min(least,
                        1.0f - covered * (1.0f - standsOut(e, mesh.positions[corner], mesh.normals[corner])));
@@ -61,12 +70,12 @@ float RingTest::exposed(std::uint32_t e, const Side& face) const {
     const std::array<std::uint32_t, 2>& v = curves.vertices[other][own];
     if (visible[v[0]] == visible[v[1]] || edge.nonManifold) continue;
     const vec3 &p = mesh.positions[v[0]], &q = mesh.positions[v[1]];
-    const float t = contourParameter(view, {p, q}, {mesh.normals[v[0]], mesh.normals[v[1]]});
+    const float t = crossings[other][own];
     middle += 0.5f * curvePoint(p, q, curves.curves[other], t);
     normal += (1.0f - t) * mesh.normals[v[0]] + t * mesh.normals[v[1]];
-    ++crossings;
+    ++ends;
   }
-  return crossings == 2 ? std::min(least, standsOut(e, middle, normal)) : least;
+  return ends == 2 ? std::min(least, standsOut(e, middle, normal)) : least;
 }
 
 float RingTest::alpha(std::uint32_t e) const {

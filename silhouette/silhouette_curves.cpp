@@ -16,11 +16,12 @@
 #include <numeric>
 
 #include "raster/base/check.h"
+#include "raster/base/scratch.h"
 #include "silhouette/crossed_edges.h"
 #include "silhouette/curve_set.h"
+#include "silhouette/edge_search.h"
 #include "silhouette/method.h"
 #include "silhouette/patch.h"
-#include "silhouette/ring.h"
 #include "silhouette/writer.h"
 
 namespace limn::silhouette {
@@ -49,8 +50,7 @@ struct Slot {
 };
 
 struct Scratch {
-  std::vector<std::uint8_t> visible;       // per vertex of the mesh
-  std::vector<float> alphas;               // per edge: the share of its curve that is shown
+  EdgeSearch search;
   std::vector<std::uint32_t> blockCounts;  // then their prefix sums
   std::vector<CrossedEdge> edges;
   std::vector<std::uint32_t> recordOf;   // per edge: index into edges, or kNone
@@ -94,7 +94,6 @@ struct Pass {
   StreamWriter writer;
 
   void run();
-  void findVisible();
   void findEdges();
   void listReplaced(std::vector<std::uint32_t>& triangles);
   void findSegments();
@@ -130,7 +129,7 @@ struct Pass {
 
 void Pass::run() {
   const auto start = std::chrono::steady_clock::now();
-  findVisible();
+  scratch.search.run(mesh, topology, prepared, view, crew);
   findEdges();
   report.classifyMs =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -166,36 +165,15 @@ void Pass::collect(std::size_t items, std::vector<T>& out, const Count& count, c
   });
 }
 
-void Pass::findVisible() {
-  scratch.visible.resize(mesh.positions.size());
-  crew.forBlocks(mesh.positions.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v)
-      scratch.visible[v] = facing(view, mesh.positions[v], mesh.normals[v]) >= 0.0f ? 1 : 0;
-  });
-}
-
 // Lists the edges that have vertices of their own and marks their triangles.
 void Pass::findEdges() {
-  const RingTest ring{mesh, topology, prepared, view, scratch.visible};
-  const std::vector<Edge>& edges = topology.edges();
-  scratch.alphas.resize(edges.size());
-  const auto wanted = [&](std::size_t e) -> std::uint32_t {
-    const EdgeVertices& v = prepared.vertices[e];
-    const bool crossed = scratch.visible[v[0][0]] != scratch.visible[v[0][1]] ||
-                         scratch.visible[v[1][0]] != scratch.visible[v[1][1]];
-    return scratch.alphas[e] > 0.0f || (crossed && prepared.bridged[e] != 0) ? 1 : 0;
-  };
-  crew.forBlocks(edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) {
-      scratch.alphas[e] = prepared.always[e] != 0 ? 1.0f : ring.alpha(static_cast<std::uint32_t>(e));
-    }
-  });
-  collect(edges.size(), scratch.edges, wanted, [&](std::size_t e, std::uint32_t at) {
+  const auto wanted = [&](std::size_t e) -> std::uint32_t { return scratch.search.isListed(e) ? 1 : 0; };
+  collect(prepared.links.size(), scratch.edges, wanted, [&](std::size_t e, std::uint32_t at) {
     scratch.edges[at] = crossedEdge(static_cast<std::uint32_t>(e));
     const CrossedEdge& record = scratch.edges[at];
     if (record.segments == 1 && !record.crosses[0] && !record.crosses[1]) return;
     scratch.recordOf[e] = at;
-    for (const Side& face : edges[e].faces)
+    for (const Side& face : topology.edges()[e].faces)
       if (face.triangle != kNone) markTriangle(stream.replaced, face.triangle);
   });
   report.smoothEdges = scratch.edges.size();
@@ -205,16 +183,11 @@ CrossedEdge Pass::crossedEdge(std::uint32_t e) {
   const EdgeVertices& v = prepared.vertices[e];
   CrossedEdge record;
   record.edge = e;
-  record.alpha = scratch.alphas[e];
-  record.seam = v[0] != v[1];
+  record.alpha = scratch.search.alphas[e];
+  record.seam = prepared.links[e].seam;
   for (std::size_t face = 0; face < 2; ++face) {
-    const std::array<std::uint32_t, 2>& ends = v[face];
-    record.crosses[face] = scratch.visible[ends[0]] != scratch.visible[ends[1]];
-    if (face == 1 && !record.seam)
-      record.parameter[1] = record.parameter[0];
-    else if (record.crosses[face])
-      record.parameter[face] = contourParameter(view, {mesh.positions[ends[0]], mesh.positions[ends[1]]},
-                                                {mesh.normals[ends[0]], mesh.normals[ends[1]]});
+    record.crosses[face] = scratch.search.visible[v[face][0]] != scratch.search.visible[v[face][1]];
+    if (record.crosses[face]) record.parameter[face] = scratch.search.crossings[e][face];
   }
   if (record.alpha == 0.0f) return record;
   const EdgeCurve curve = curveOf(record);
@@ -247,8 +220,8 @@ void Pass::findSegments() {
 
 Segment Pass::segmentOf(std::uint32_t triangle) {
   const std::uint32_t* corner = &mesh.indices[3 * std::size_t{triangle}];
-  const std::array<std::uint8_t, 3> seen{scratch.visible[corner[0]], scratch.visible[corner[1]],
-                                         scratch.visible[corner[2]]};
+  const std::array<std::uint8_t, 3> seen{scratch.search.visible[corner[0]], scratch.search.visible[corner[1]],
+                                         scratch.search.visible[corner[2]]};
   Segment segment;
   if (seen[0] == seen[1] && seen[1] == seen[2]) return segment;
   segment.lone = seen[1] == seen[2] ? 0 : seen[2] == seen[0] ? 1 : 2;
@@ -585,6 +558,11 @@ class SilhouetteCurves final : public MethodState {
               PixelBound(view),
               StreamWriter(mesh_, parameters.shadingNormals, stream)};
     pass.run();
+  }
+
+  void levelScratch() override {
+    levelCapacity(scratch_, &Scratch::blockCounts, &Scratch::edges, &Scratch::triangles, &Scratch::segments,
+                  &Scratch::segmentTriangles, &Scratch::planes, &Scratch::lowered, &Scratch::slots);
   }
 
  private:

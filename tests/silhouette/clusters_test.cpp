@@ -20,7 +20,7 @@ TEST(FacingKernel, EveryTargetGivesTheScalarBits) {
   std::mt19937 random(1);
   const auto next = [&] { return static_cast<float>(random() % 2000001) / 1000000.0f - 1.0f; };
   constexpr std::size_t kCount = 203;
-  std::vector<float> arrays[6], expected(kCount), facings(kCount);
+  std::vector<float> arrays[6], expected(kCount), expectedHeights(kCount), facings(kCount);
   for (auto& array : arrays)
     for (std::size_t i = 0; i < kCount; ++i) array.push_back(next());
   const VertexArrays vertices{arrays[0].data(), arrays[1].data(), arrays[2].data(),
@@ -29,12 +29,16 @@ TEST(FacingKernel, EveryTargetGivesTheScalarBits) {
   for (const bool perspective : {false, true}) {
     for (const std::size_t count : {std::size_t{0}, std::size_t{1}, std::size_t{15}, kCount}) {
       computeFacingsScalar(eye, perspective, vertices, count, expected.data());
+      computeHeightsScalar(eye, perspective, vertices, count, expectedHeights.data());
       for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
         hwy::SetSupportedTargetsForTest(targets & -targets);
         hwy::GetChosenTarget().Update(hwy::SupportedTargets());
         computeFacings(eye, perspective, vertices, count, facings.data());
         for (std::size_t i = 0; i < count; ++i)
           ASSERT_EQ(expected[i], facings[i]) << hwy::TargetName(targets & -targets);
+        computeHeights(eye, perspective, vertices, count, facings.data());
+        for (std::size_t i = 0; i < count; ++i)
+          ASSERT_EQ(expectedHeights[i], facings[i]) << hwy::TargetName(targets & -targets);
       }
       hwy::SetSupportedTargetsForTest(0);
       hwy::GetChosenTarget().Update(hwy::SupportedTargets());

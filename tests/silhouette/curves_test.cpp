@@ -35,21 +35,6 @@ View randomView(std::mt19937& random, float radius) {
                          direction);
 }
 
-// New vertices between the ends of boundary edges: each makes one open side of the mesh two.
-std::size_t verticesOnBoundaries(const Topology& topology, const RefinedStream& stream) {
-  std::size_t count = 0;
-  for (const Origin& origin : stream.origins) {
-    const std::array<float, 3> weights{1.0f - origin.weights.x - origin.weights.y, origin.weights.x,
-                                       origin.weights.y};
-    for (std::size_t side = 0; side < 3; ++side) {
-      const bool inside = weights[side] > 1e-6f && weights[(side + 1) % 3] > 1e-6f;
-      const std::uint32_t edge = topology.sideEdges()[3 * std::size_t{origin.triangle} + side];
-      if (inside && weights[(side + 2) % 3] <= 1e-6f && topology.edges()[edge].boundary) ++count;
-    }
-  }
-  return count;
-}
-
 TEST(Curves, WatertightFromRandomViewpoints) {
   std::mt19937 random(11);
   for (const Shape& shape : allShapes()) {

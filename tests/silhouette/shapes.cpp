@@ -233,4 +233,19 @@ std::size_t openSides(const std::vector<vec3>& triangles) {
   return open;
 }
 
+std::size_t verticesOnBoundaries(const Topology& topology, const RefinedStream& stream) {
+  std::size_t count = 0;
+  for (const Origin& origin : stream.origins) {
+    const std::array<float, 3> weights{1.0f - origin.weights.x - origin.weights.y, origin.weights.x,
+                                       origin.weights.y};
+    for (std::size_t side = 0; side < 3; ++side) {
+      const bool inside = weights[side] > 1e-6f && weights[(side + 1) % 3] > 1e-6f;
+      const std::uint32_t edge = topology.sideEdges()[3 * std::size_t{origin.triangle} + side];
+      if (inside && edge != kNone && weights[(side + 2) % 3] <= 1e-6f && topology.edges()[edge].boundary)
+        ++count;
+    }
+  }
+  return count;
+}
+
 }  // namespace limn::silhouette::test

@@ -53,4 +53,7 @@ std::vector<glm::vec3> drawnTriangles(const Mesh& mesh, const RefinedStream& str
 /// zero length are passed over.
 std::size_t openSides(const std::vector<glm::vec3>& triangles);
 
+/// New vertices between the ends of boundary edges: each makes one open side of the mesh two.
+std::size_t verticesOnBoundaries(const Topology& topology, const RefinedStream& stream);
+
 }  // namespace limn::silhouette::test

@@ -1,0 +1,40 @@
+// Which edges of a mesh matter in a view: one linear pass over vertices, triangles and edges.
+//
+// Based on: L. Wang et al., "Silhouette Smoothing for Real-Time Rendering of Mesh Surfaces", section III.B. Differs in:
+// no hierarchy; signs of vertices and of the eye's distances from the triangles' planes come a vector at a time
+// (facing_kernel.h), after which an edge takes two comparisons, and only those that a silhouette curve crosses or that the
+// flat outline follows take more.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "silhouette/curve_set.h"
+#include "silhouette/ring.h"
+
+namespace limn::silhouette {
+
+struct EdgeSearch {
+  std::vector<float> heights;                   ///< per vertex of the mesh: contour.h, facing()
+  std::vector<std::uint8_t> visible;            ///< likewise
+  std::vector<float> planeHeights;              ///< per triangle: the eye's distance from its plane
+  std::vector<std::uint8_t> states;             ///< per edge
+  std::vector<std::array<float, 2>> crossings;  ///< per edge that has silhouette points: where, for each face
+  std::vector<float> alphas;  ///< per edge that is listed: the share of its curve that is shown
+
+  void run(const Mesh& mesh, const Topology& topology, const CurveSet& curves, const View& view,
+           const Crew& crew);
+
+  /// Whether the edge has silhouette points or shows its curve.
+  bool isListed(std::size_t e) const { return (states[e] & kListed) != 0; }
+
+ private:
+  enum State : std::uint8_t { kCrossed = 1, kMayBend = 2, kListed = 4 };
+
+  void findVisible(const CurveSet& curves, const View& view, const Crew& crew);
+  std::uint8_t stateOf(std::size_t e, const Mesh& mesh, const CurveSet& curves, const View& view,
+                       float largest);
+};
+
+}  // namespace limn::silhouette
