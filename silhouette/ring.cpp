@@ -37,58 +37,63 @@ float RingTest::coverOf(std::uint32_t corner) const {
   return 1.0f - smoothStep(0.0f, kFacing, std::abs(height) / std::sqrt(length2));
 }
 
-// How far the middle of the edge, curved or straight, is outside the tangent plane at a place on the contour: 0
-// … 1.
-float RingTest::standsOut(std::uint32_t e, const vec3& place, const vec3& normal) const {
-  const float size2 = dot(normal, normal);
-  if (!(size2 > 0.0f)) return 1.0f;
-  const std::array<std::uint32_t, 2>& ends = curves.vertices[e][0];
-  const vec3 &p = mesh.positions[ends[0]], &q = mesh.positions[ends[1]];
-  const float scale = 1.0f / (std::sqrt(size2) * glm::length(q - p));
-  const float chord = dot(0.5f * (p + q) - place, normal) * scale;
-  const float curve = chord + dot(curveOffset(curves.curves[e], 0.5f), normal) * scale;
+// How far the middle of the edge, curved or straight, is outside the tangent plane at a place on the contour: 0 … 1.
+float RingTest::standsOut(const Middle& edge, const vec3& place, const vec3& unitNormal) const {
+  const float chord = dot(edge.chord - place, unitNormal) * edge.scale;
+  const float curve = chord + dot(edge.offset, unitNormal) * edge.scale;
   return std::max(smoothStep(kChordBehind, kChordOut, chord), smoothStep(kCurveBehind, kCurveOut, curve));
 }
 
-// How much of the edge the viewer sees beside the contour in a triangle at the edge: the segment there, and the
-// corners near the contour, which are all that is left of a segment that has shrunk into one.
-float RingTest::exposed(std::uint32_t e, const Side& face) const {
-  const std::uint32_t first = 3 * face.triangle;
+// How much of the edge the viewer sees beside the segment in a triangle at it; 1 where there is none.
+float RingTest::besideSegment(const Middle& edge, const Side& face) const {
+  const std::uint32_t* corner = &mesh.indices[3 * face.triangle];
+  if (visible[corner[0]] == visible[corner[1]] && visible[corner[1]] == visible[corner[2]]) return 1.0f;
   vec3 middle(0.0f), normal(0.0f);
-  float least = 1.0f;
-  int ends = 0;
   for (std::uint32_t k = 0; k < 3; ++k) {
-    const std::uint32_t corner = mesh.indices[first + k];
-    const float covered = coverOf(corner);
-    if (covered > 0.0f)
-      least = std::min(least,
-                       1.0f - covered * (1.0f - standsOut(e, mesh.positions[corner], mesh.normals[corner])));
-
-    const std::uint32_t other = topology.sideEdges()[first + k];
-    const Edge& edge = topology.edges()[other];
-    const std::size_t own = edge.faces[0].triangle == face.triangle && edge.faces[0].side == k ? 0 : 1;
+    const std::uint32_t other = topology.sideEdges()[3 * face.triangle + k];
+    const EdgeLink& link = curves.links[other];
+    const Side& second = topology.edges()[other].faces[1];
+    const std::size_t own = link.seam && second.triangle == face.triangle && second.side == k ? 1 : 0;
     const std::array<std::uint32_t, 2>& v = curves.vertices[other][own];
-    if (visible[v[0]] == visible[v[1]] || edge.nonManifold) continue;
-    const vec3 &p = mesh.positions[v[0]], &q = mesh.positions[v[1]];
+    if (visible[v[0]] == visible[v[1]]) continue;
+    if (!link.bridged) return 1.0f;
     const float t = crossings[other][own];
-    middle += 0.5f * curvePoint(p, q, curves.curves[other], t);
+    middle += 0.5f * curvePoint(mesh.positions[v[0]], mesh.positions[v[1]], curves.curves[other], t);
     normal += (1.0f - t) * mesh.normals[v[0]] + t * mesh.normals[v[1]];
-    ++ends;
   }
-  return ends == 2 ? std::min(least, standsOut(e, middle, normal)) : least;
+  const float size2 = dot(normal, normal);
+  return size2 > 0.0f ? standsOut(edge, middle, normal / std::sqrt(size2)) : 1.0f;
+}
+
+// And beside the corners near the contour, which are all that is left of a segment that has shrunk into one.
+float RingTest::besideCorners(const Middle& edge, const Side& face) const {
+  float least = 1.0f;
+  for (std::uint32_t k = 0; k < 3 && least > 0.0f; ++k) {
+    const std::uint32_t corner = mesh.indices[3 * face.triangle + k];
+    const float covered = coverOf(corner);
+    if (!(covered > 0.0f)) continue;
+    const float out = standsOut(edge, mesh.positions[corner], mesh.normals[corner]);
+    least = std::min(least, 1.0f - covered * (1.0f - out));
+  }
+  return least;
 }
 
 float RingTest::alpha(std::uint32_t e) const {
-  const Edge& edge = topology.edges()[e];
-  if (edge.boundary || edge.isFeature() || curves.curves[e] == CurveOffsets{}) return 0.0f;
-  const std::array<std::uint32_t, 2>& ends = curves.vertices[e][0];
-  const vec3 w = towardsEye(view, 0.5f * (mesh.positions[ends[0]] + mesh.positions[ends[1]]));
+  const EdgeLink& link = curves.links[e];
+  const vec3 &p = mesh.positions[link.ends[0]], &q = mesh.positions[link.ends[1]];
+  const Middle middle{0.5f * (p + q), curveOffset(curves.curves[e], 0.5f), 1.0f / glm::length(q - p)};
+  const vec3 w = towardsEye(view, middle.chord);
   const float length2 = dot(w, w);
-  const float product =
-      dot(w, curves.faceNormals[edge.faces[0].triangle]) * dot(w, curves.faceNormals[edge.faces[1].triangle]);
+  const float product = dot(w, curves.faceNormals[link.faces[0]]) * dot(w, curves.faceNormals[link.faces[1]]);
   if (!(product < kBeta * length2)) return 0.0f;
-  const float alpha = silhouettenessOf(product / length2, kBeta) * exposed(e, edge.faces[0]);
-  return alpha > 0.0f ? alpha * exposed(e, edge.faces[1]) : 0.0f;
+  // The segments first: beside them nearly every edge of a smooth shape is hidden.
+  const std::array<Side, 2>& faces = topology.edges()[e].faces;
+  const float first = besideSegment(middle, faces[0]);
+  if (!(first > 0.0f)) return 0.0f;
+  const float second = besideSegment(middle, faces[1]);
+  if (!(second > 0.0f)) return 0.0f;
+  return silhouettenessOf(product / length2, kBeta) * std::min(first, besideCorners(middle, faces[0])) *
+         std::min(second, besideCorners(middle, faces[1]));
 }
 
 }  // namespace limn::silhouette

@@ -31,13 +31,19 @@ struct RingTest {
   /// an α.
   float largestProduct() const;
 
-  /// α of a smooth edge; 0 for others.
+  /// α of a smooth edge with a curve.
   float alpha(std::uint32_t e) const;
 
  private:
+  /// The middle of an edge's chord, what its curve adds there, and 1 / the edge's length.
+  struct Middle {
+    glm::vec3 chord, offset;
+    float scale;
+  };
   float coverOf(std::uint32_t corner) const;
-  float standsOut(std::uint32_t e, const glm::vec3& place, const glm::vec3& normal) const;
-  float exposed(std::uint32_t e, const Side& face) const;
+  float standsOut(const Middle& edge, const glm::vec3& place, const glm::vec3& unitNormal) const;
+  float besideSegment(const Middle& edge, const Side& face) const;
+  float besideCorners(const Middle& edge, const Side& face) const;
 };
 
 }  // namespace limn::silhouette

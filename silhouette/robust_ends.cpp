@@ -23,7 +23,9 @@ constexpr float kTiltOnset = 0.35f;
 constexpr float kTiltWidth = 0.25f;
 constexpr float kOnsetPerDeviation = 4.0f;
 constexpr float kDeviationMost = 0.2f;
-constexpr float kEvidenceNone = 0.6f;  // ρ
+constexpr float kOwnFull = 0.15f;  // ρ
+constexpr float kOwnNone = 0.4f;
+constexpr float kEvidenceNone = 0.6f;
 constexpr float kEvidenceFull = 0.9f;
 constexpr std::size_t kEdgesPerBlock = 4096;
 
@@ -87,10 +89,14 @@ void RobustEnds::findTrust(const Crew& crew) {
     all.deviations += sum.deviations;
     all.differences += sum.differences;
   }
-  const bool doubtful = all.deviations < kEvidenceFull * all.differences;
-  trust_ = doubtful ? smoothStep(kEvidenceNone, kEvidenceFull,
-                                 static_cast<float>(all.deviations / all.differences))
-                    : 1.0f;
+  trust_ = 1.0f;
+  if (all.deviations < kEvidenceFull * all.differences)
+    trust_ = trustOf(static_cast<float>(all.deviations / all.differences));
+}
+
+float RobustEnds::trustOf(float evidence) {
+  return std::max(1.0f - smoothStep(kOwnFull, kOwnNone, evidence),
+                  smoothStep(kEvidenceNone, kEvidenceFull, evidence));
 }
 
 // Sine of the angle between a vertex's normal and that of its ring of faces.

@@ -26,8 +26,10 @@
 //
 //   ρ = mean over vertices of sin∠(normal, faces around) / mean over edges of |h_i - h_j|/2
 //
-// (1 to 3 on surfaces that are sampled, at most 0.6 on polygons, without bound on regular meshes of round shapes, 0
-// where normals are the means of their own faces) a mesh is trusted from 0 to 1 as ρ grows from 0.6 to 0.9.
+// (1 to 3 on surfaces that were sampled finely, 0.4 to 0.6 on simplified polygons, without bound on regular meshes of
+// round shapes) a mesh is trusted from 0 to 1 as ρ grows from 0.6 to 0.9. So is, from 0.4 down to 0.15, one whose
+// normals are simply the means of its own faces: it was made from nothing finer, and a round shape is what its shading
+// asks for.
 //
 // The price: shapes so coarse that normals turn by more than about 50 degrees along an edge, with normals that
 // are no more than the means of their own faces, are left nearly flat.
@@ -49,8 +51,8 @@ class RobustEnds {
   /// Factors of d_ij and d_ji of an edge without features, each in [0, 1].
   std::array<float, 2> factors(const Edge& edge) const;
 
-  /// How far the normals of the mesh are evidence of a rounder shape than its faces, in [0, 1].
-  float trust() const { return trust_; }
+  /// Whether normals of this evidence ρ ask for a rounder shape than the faces', in [0, 1].
+  static float trustOf(float evidence);
 
  private:
   /// Of the edges of a block, twice the means' sums.

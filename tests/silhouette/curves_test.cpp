@@ -7,6 +7,7 @@
 
 #include "raster/base/elementary.h"
 #include "shapes.h"
+#include "silhouette/robust_ends.h"
 
 namespace limn::silhouette::test {
 namespace {
@@ -223,6 +224,16 @@ TEST(Curves, DeformedMeshIsAsANewOne) {
   fresh.refine(view, curves(), b);
   EXPECT_EQ(a.positions, b.positions);
   EXPECT_EQ(a.indices, b.indices);
+}
+
+// Normals of a polygon that was simplified are neither the means of the faces that are left nor those of a finer shape.
+TEST(RobustEnds, TrustsOwnNormalsAndThoseOfFinerShapes) {
+  for (const float trusted : {0.0f, 0.15f, 0.9f, 2.0f, 1e9f}) EXPECT_EQ(RobustEnds::trustOf(trusted), 1.0f);
+  for (const float doubted : {0.4f, 0.5f, 0.6f}) EXPECT_EQ(RobustEnds::trustOf(doubted), 0.0f);
+  for (const float between : {0.25f, 0.75f}) {
+    EXPECT_GT(RobustEnds::trustOf(between), 0.0f);
+    EXPECT_LT(RobustEnds::trustOf(between), 1.0f);
+  }
 }
 
 }  // namespace
