@@ -11,8 +11,15 @@ namespace {
 constexpr std::size_t kStreamPiece = 2048;  // triangles of a stream that one batch holds
 constexpr std::size_t kPoseGrain = 4096;
 
-// Rows of the matrix that turns normals: the cofactors, with the sign that keeps the outside outside.
-void setNormalRows(const glm::mat3& m, float sign, Batch& batch) {
+// Rows of the matrix that turns normals: the cofactors, with the sign that keeps the outside outside. Only directions
+// count, so a power of two takes the scale away: products of huge or tiny ones would leave the floats when squared.
+void setNormalRows(const glm::mat3& scaled, float sign, Batch& batch) {
+  float largest = 0.0F;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) largest = std::max(largest, std::fabs(scaled[i][j]));
+  int exponent = 0;
+  std::frexp(largest, &exponent);
+  const glm::mat3 m = scaled * std::ldexp(1.0F, -exponent);
   const glm::vec3 rows[3] = {
       {m[0][0], m[1][0], m[2][0]}, {m[0][1], m[1][1], m[2][1]}, {m[0][2], m[1][2], m[2][2]}};
   for (int i = 0; i < 3; ++i) {
