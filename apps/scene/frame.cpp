@@ -1,6 +1,7 @@
 // One frame as a straight line: place → refine → attributes → draws → rasterize.
 #include "apps/scene/frame.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <glm/mat3x3.hpp>
@@ -22,21 +23,28 @@ double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
+/// What smoothing a mesh takes, made for the first frame that is not flat: far more memory than the mesh itself.
+struct Smoothing {
+  silhouette::Topology topology;
+  DecodedCurves curves;
+  silhouette::Refiner refiner;
+
+  Smoothing(const Mesh& mesh, const silhouette::Mesh& shape, Workers& workers)
+      : topology(shape),
+        curves(decode(mesh.curves, shape, topology)),
+        refiner(shape, topology, workers, curves.view()) {}
+};
+
 /// What a mesh of the scene keeps for as long as the scene is drawn.
 struct MeshResources {
   silhouette::Mesh shape;
-  silhouette::Topology topology;
-  DecodedCurves curves;
   raster::Geometry geometry;
-  silhouette::Refiner refiner;
+  std::unique_ptr<Smoothing> smoothing;
 
-  MeshResources(const Mesh& mesh, Workers& workers)
+  explicit MeshResources(const Mesh& mesh)
       : shape{mesh.positions, mesh.normals, mesh.indices},
-        topology(shape),
-        curves(decode(mesh.curves, shape, topology)),
         geometry({mesh.positions, mesh.normals, mesh.texcoords, mesh.colors, mesh.tangents}, mesh.indices,
-                 mesh.parts),
-        refiner(shape, topology, workers, curves.view()) {}
+                 mesh.parts) {}
 };
 
 /// What an instance keeps from frame to frame: its stream, and arrays of its own where it does not merely
@@ -132,11 +140,14 @@ struct FrameDrawer::State {
 
   MeshResources& mesh(std::uint32_t index) {
     std::unique_ptr<MeshResources>& resources = meshes[index];
-    if (!resources) resources = std::make_unique<MeshResources>(scene.meshes[index], workers);
+    if (!resources) resources = std::make_unique<MeshResources>(scene.meshes[index]);
     return *resources;
   }
 
+  /// Sets up what the frame needs of every instance, and refines them where `smooth`.
+  void refine(const Pose& pose, const CameraView& camera, const FrameSettings& settings, bool smooth);
   void place(const Instance& instance, const CameraView& camera, InstanceResources& out);
+  silhouette::Refiner* refinerOf(MeshResources& shared, InstanceResources& instance);
   raster::Draw describe(const Instance& instance, const InstanceResources& resources) const;
   RefinedInstance refined(const InstanceResources& resources) const;
   void addOverlays(const OverlaySet& wanted);
@@ -170,17 +181,22 @@ void FrameDrawer::State::place(const Instance& instance, const CameraView& camer
     shapeToWorld[3] = instance.toWorld[3];
   }
   out.ownShape = instance.deformed() || !similar;
-  if (out.ownShape) {
-    if (!out.refiner) out.refiner.emplace(out.shape, shared.topology, workers, shared.curves.view());
-    out.refiner->deform(out.shape);
-  }
-  silhouette::Refiner& refiner = out.ownShape ? *out.refiner : shared.refiner;
   out.mesh = instance.mesh;
   out.task = tasks.size();
-  tasks.push_back({&refiner,
-                   silhouette::makeView(camera.projection, camera.worldToView * shapeToWorld),
-                   &out.stream,
-                   {}});
+  tasks.push_back(
+      {nullptr, silhouette::makeView(camera.projection, camera.worldToView * shapeToWorld), &out.stream, {}});
+}
+
+/// The refiner of the instance's shape.
+silhouette::Refiner* FrameDrawer::State::refinerOf(MeshResources& shared, InstanceResources& instance) {
+  if (!shared.smoothing)
+    shared.smoothing = std::make_unique<Smoothing>(scene.meshes[instance.mesh], shared.shape, workers);
+  Smoothing& smoothing = *shared.smoothing;
+  if (!instance.ownShape) return &smoothing.refiner;
+  if (!instance.refiner)
+    instance.refiner.emplace(instance.shape, smoothing.topology, workers, smoothing.curves.view());
+  instance.refiner->deform(instance.shape);
+  return &*instance.refiner;
 }
 
 raster::Draw FrameDrawer::State::describe(const Instance& instance,
@@ -201,7 +217,8 @@ raster::Draw FrameDrawer::State::describe(const Instance& instance,
 }
 
 RefinedInstance FrameDrawer::State::refined(const InstanceResources& resources) const {
-  return {resources.shape,          &meshes[resources.mesh]->topology,
+  const Smoothing* smoothing = meshes[resources.mesh]->smoothing.get();
+  return {resources.shape,          smoothing ? &smoothing->topology : nullptr,
           &resources.stream,        resources.texcoords,
           resources.colors,         resources.shapeTangents,
           resources.streamTangents, resources.shapeToWorld};
@@ -259,23 +276,29 @@ FrameDrawer::FrameDrawer(const Scene& scene, int threads, const raster::Tuning& 
     : state_(std::make_unique<State>(scene, threads, tuning)) {}
 FrameDrawer::~FrameDrawer() = default;
 
-void FrameDrawer::refine(const Pose& pose, const CameraView& camera, const FrameSettings& settings) {
-  State& s = *state_;
-  s.parameters = settings.refinement;
-  s.parameters.listContour = settings.overlays[static_cast<std::size_t>(Overlay::kContour)];
-  s.instances.resize(pose.instances.size());
-  s.tasks.clear();
+void FrameDrawer::State::refine(const Pose& pose, const CameraView& camera, const FrameSettings& settings,
+                                bool smooth) {
+  parameters = settings.refinement;
+  parameters.listContour = settings.overlays[static_cast<std::size_t>(Overlay::kContour)];
+  instances.resize(pose.instances.size());
+  tasks.clear();
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
-    s.instances[i].visible = pose.instances[i].visible;
-    if (pose.instances[i].visible) s.place(pose.instances[i], camera, s.instances[i]);
+    instances[i].visible = pose.instances[i].visible;
+    if (!pose.instances[i].visible) continue;
+    InstanceResources& resources = instances[i];
+    place(pose.instances[i], camera, resources);
+    if (smooth)
+      tasks.back().refiner = refinerOf(mesh(resources.mesh), resources);
+    else
+      resources.stream.clear(resources.shape.triangleCount());
   }
-  silhouette::refineAll(s.tasks, s.parameters, s.workers);
+  if (smooth) silhouette::refineAll(tasks, parameters, workers);
 
-  s.draws.clear();
+  draws.clear();
   std::uint32_t firstId = 0;
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
-    const Mesh& mesh = s.scene.meshes[pose.instances[i].mesh];
-    InstanceResources& resources = s.instances[i];
+    const Mesh& mesh = scene.meshes[pose.instances[i].mesh];
+    InstanceResources& resources = instances[i];
     const std::uint32_t id = firstId;
     firstId += static_cast<std::uint32_t>(mesh.indices.size() / 3);
     if (!pose.instances[i].visible) {
@@ -286,17 +309,23 @@ void FrameDrawer::refine(const Pose& pose, const CameraView& camera, const Frame
     interpolate<glm::vec2>(mesh, origins, mesh.texcoords, resources.texcoords);
     interpolate<glm::vec4>(mesh, origins, mesh.colors, resources.colors);
     interpolate<glm::vec4>(mesh, origins, resources.shapeTangents, resources.streamTangents);
-    raster::Draw& draw = s.draws.emplace_back(s.describe(pose.instances[i], resources));
-    draw.modelToView = s.tasks[resources.task].view.modelToView;
+    raster::Draw& draw = draws.emplace_back(describe(pose.instances[i], resources));
+    draw.modelToView = tasks[resources.task].view.modelToView;
     draw.firstId = id;
   }
+}
+
+void FrameDrawer::refine(const Pose& pose, const CameraView& camera, const FrameSettings& settings) {
+  state_->refine(pose, camera, settings, true);
 }
 
 void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSettings& settings,
                        Image& image, FrameStatistics* statistics, Planes* planes) {
   const Clock::time_point start = Clock::now();
   State& s = *state_;
-  refine(pose, camera, settings);
+  const bool hasOverlays =
+      std::find(settings.overlays.begin(), settings.overlays.end(), true) != settings.overlays.end();
+  s.refine(pose, camera, settings, settings.refinement.method != silhouette::Method::kFlat || hasOverlays);
   viewLights(s.scene, pose, camera, settings, s.lights);
   s.addOverlays(settings.overlays);
   const double refineMs = millisecondsSince(start);
@@ -343,7 +372,7 @@ void FrameDrawer::silhouetteness(std::size_t instance, std::vector<float>& alpha
   alphas.clear();
   if (!resources.visible) return;
   const silhouette::RefineTask& task = state_->tasks[resources.task];
-  task.refiner->silhouetteness(task.view, state_->parameters, alphas);
+  if (task.refiner != nullptr) task.refiner->silhouetteness(task.view, state_->parameters, alphas);
 }
 
 const silhouette::RefinedStream& FrameDrawer::stream(std::size_t instance) const {

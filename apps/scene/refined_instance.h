@@ -13,7 +13,7 @@ namespace limn::scene {
 /// One instance as a frame has it: a coarse shape, and the stream that replaces some of its triangles.
 struct RefinedInstance {
   silhouette::Mesh shape;
-  const silhouette::Topology* topology = nullptr;
+  const silhouette::Topology* topology = nullptr;  ///< null in a frame that is flat and was only drawn
   const silhouette::RefinedStream* stream = nullptr;
   std::span<const glm::vec2> texcoords;  ///< of the stream's vertices, as far as the mesh has them
   std::span<const glm::vec4> colors;
