@@ -31,7 +31,7 @@ using TextChunks = std::vector<std::pair<std::string, std::string>>;
 inline constexpr int kLargestSize = 16384;  ///< pixels, in width and in height
 inline constexpr int kHighestCompression = 12;
 
-/// PNG bytes: RGBA8, sRGB chunk, text chunks, one fixed filter, zlib level 0 … 12 (libdeflate). The same
+/// PNG bytes: RGBA8, sRGB chunk, text chunks, one fixed filter, compression level 0 (none), 1 (fast) … 12 (small). The same
 /// bytes for the same input everywhere. Any number of threads may encode at a time. Throws
 /// std::invalid_argument for sizes outside 1 … 16384 and other levels, std::bad_alloc.
 std::vector<std::uint8_t> encodePng(const Image& image, const TextChunks& texts, int level);

@@ -111,10 +111,15 @@ void requireSize(int width, int height) {
           "a picture is 1 to 16384 pixels wide and high");
 }
 
+/// libdeflate's level for one of ours: its level 1 takes longer than 2 on pictures, and makes them larger.
+int deflateLevel(int level) {
+  return level == 0 ? 0 : std::min(level + 1, 12);
+}
+
 void useLevel(int level) {
   ThreadCompressor& own = threadCompressor();
   if (own.level == level) return;
-  own.compressor.reset(libdeflate_alloc_compressor(level));
+  own.compressor.reset(libdeflate_alloc_compressor(deflateLevel(level)));
   if (!own.compressor) throw std::bad_alloc();
   own.level = level;
 }
