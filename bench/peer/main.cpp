@@ -22,6 +22,7 @@ struct Options {
   bench::SceneOptions scene;
   int level = 1;  ///< > 1: every triangle as level² triangles of its PN triangle, refined once beforehand
   std::string against;  ///< picture to compare view 0 with
+  int raw = 0;          ///< > 0: so many frames as rows of RGBA on standard output, and nothing else
 };
 
 Options parse(int argc, char** argv) {
@@ -32,6 +33,8 @@ Options parse(int argc, char** argv) {
       ->check(CLI::Range(1, silhouette::kMaxSegments))
       ->capture_default_str();
   app.add_option("--against", options.against, "compare view 0 with this PNG of limn_bench_frames");
+  app.add_option("--raw", options.raw,
+                 "write so many frames as raw RGBA to standard output, and time nothing");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -110,7 +113,8 @@ class Peer {
   void uploadTexture();
   void draw(int view);
   double coverage() const;
-  scene::Image picture();
+  scene::Image picture() const;
+  void writeRaw();
   void compare(const scene::Image& own, const scene::Image& other) const;
 };
 
@@ -211,9 +215,8 @@ double Peer::coverage() const {
   return 4.0 * static_cast<double>(covered) / static_cast<double>(pixels_.size());
 }
 
-// View 0, top row first.
-scene::Image Peer::picture() {
-  draw(0);
+// The frame drawn last, top row first.
+scene::Image Peer::picture() const {
   const std::size_t row = std::size_t{4} * static_cast<std::size_t>(options_.scene.width);
   scene::Image image{options_.scene.width, options_.scene.height, {}};
   for (std::size_t end = pixels_.size(); end > 0; end -= row) {
@@ -247,13 +250,24 @@ void Peer::compare(const scene::Image& own, const scene::Image& other) const {
               sum / static_cast<double>(std::max<std::size_t>(both, 1)), one, apart, both);
 }
 
+void Peer::writeRaw() {
+  for (int frame = 0; frame < options_.raw; ++frame) {
+    draw(frame % options_.scene.views);
+    const scene::Image image = picture();
+    if (std::fwrite(image.rgba.data(), 1, image.rgba.size(), stdout) != image.rgba.size())
+      throw std::runtime_error("standard output is closed");
+  }
+}
+
 void Peer::run() {
   const bench::SceneOptions& o = options_.scene;
+  if (options_.raw > 0) return writeRaw();
   double covered = 0.0;
   for (int view = 0; view < o.views; ++view) {
     draw(view);
     covered += coverage() / o.views;
   }
+  draw(0);
   const scene::Image own = picture();
   if (!o.dump.empty()) {
     const std::vector<std::uint8_t> png = scene::encodePng(own, {}, 1);
