@@ -53,9 +53,10 @@ demo: build
 	@build/release/apps/limn render builtin:knot-480 --turntable 12 --size 640x400 -o out/knot-%02d.png
 	@echo "limn: the same coarse meshes, flat in out/demo-flat.png and smooth in out/demo-smooth.png; a turn of a knot in out/knot-*.png"
 
-# The pictures of the README and the manual.
+# The pictures of the README, the manual and the page of options.
 pictures: build
 	@build/release/bench/limn_pictures docs/pictures
+	@cd docs && PATH="$(CURDIR)/build/release/apps:$$PATH" ./run_commands.sh options.md
 
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 
@@ -77,6 +78,7 @@ check: check-packages
 check-all: check
 	@tests/tidy.sh build/sanitize all
 	@tests/matrix.sh
+	@$(MAKE) --no-print-directory fuzz FUZZ_SECONDS=1200
 
 # All figures, in less than ten minutes, into bench/results; the page with all of them is bench/results/report.html.
 bench: bench-packages
@@ -86,7 +88,7 @@ bench: bench-packages
 
 # What a run finds is mended, and the input kept in tests/fuzz/corpus, where every later run starts.
 FUZZ_SECONDS ?= 60
-FUZZ = -max_total_time=$$(($(FUZZ_SECONDS) / 2)) -timeout=5 -rss_limit_mb=1024 -print_final_stats=1
+FUZZ = -max_total_time=$$(($(FUZZ_SECONDS) / 2)) -timeout=20 -rss_limit_mb=1024 -print_final_stats=1
 fuzz: check-packages
 	@$(call compile,fuzz,limn_fuzz_loader limn_fuzz_frame)
 	@mkdir -p build/fuzz/loader build/fuzz/frame
