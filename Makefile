@@ -8,9 +8,9 @@ PACKAGES := g++ cmake ninja-build pkg-config git \
   libdeflate-dev libpng-dev libxxhash-dev libgtest-dev libbenchmark-dev librapidcheck-dev
 # What `make check` needs besides.
 CHECK_PACKAGES := clang clang-format clang-tidy libclang-rt-14-dev assimp-testmodels xxhash
-# What `make bench` needs besides: gnuplot draws its pictures, Mesa's OSMesa is the peer in the race, chromium opens the
-# report to see that it works.
-BENCH_PACKAGES := gnuplot-nox fonts-dejavu-core python3 libgl-dev libosmesa6 chromium
+# What `make bench` needs besides: gnuplot draws its pictures, Mesa's OSMesa is the peer in the race, F3D (on an X server
+# without a screen) is what people draw glTF files with, chromium opens the report to see that it works.
+BENCH_PACKAGES := gnuplot-nox fonts-dejavu-core python3 libgl-dev libosmesa6 f3d xvfb xauth chromium
 
 .PHONY: help build demo pictures check check-all bench fuzz format packages check-packages bench-packages
 

@@ -98,6 +98,8 @@ def speed(run):
     run.text("race", os.path.join(BENCH, "race.py"), "--build", folder, "--rounds", "3", "--json", run.file("race.json"))
     run.text("linear", os.path.join(BENCH, "linear.py"), "--build", folder, "--picture",
              run.file("linear.svg"))
+    run.text("disk", os.path.join(BENCH, "disk.py"), "--build", run.build, "--frames", "40", "--rounds", "2", "--json",
+             run.file("disk.json"))
     run.measure("frames", os.path.join(BENCH, "frame_table.py"), "--build", folder)
     printed = run.command("microbench", run.program("limn_microbench"), "--benchmark_format=json",
                           "--benchmark_min_time=0.1")
