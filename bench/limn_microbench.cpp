@@ -8,6 +8,7 @@
 #include "bench/measure/views.h"
 #include "raster/base/elementary.h"
 #include "silhouette/contour.h"
+#include "silhouette/edge_clusters.h"
 #include "silhouette/edge_curves.h"
 #include "silhouette/robust_ends.h"
 #include "silhouette/silhouetteness.h"
@@ -62,8 +63,7 @@ BENCHMARK(topology)->Arg(2)->Arg(5)->Unit(benchmark::kMicrosecond);
 void silhouetteness(benchmark::State& state) {
   const Ball ball(5);
   silhouette::Parameters parameters;
-  parameters.silhouetteness =
-      state.range(0) == 0 ? silhouette::Silhouetteness::kEdge : silhouette::Silhouetteness::kContour;
+  parameters.silhouetteness = static_cast<silhouette::Silhouetteness>(state.range(0));
   silhouette::EdgeTest test;
   test.prepare(ball.shape, ball.topology, parameters, silhouette::Crew(0));
   const silhouette::View view = ball.view();
@@ -75,7 +75,7 @@ void silhouetteness(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(edges));
 }
-BENCHMARK(silhouetteness)->ArgName("contour")->Arg(0)->Arg(1)->Unit(benchmark::kMicrosecond);
+BENCHMARK(silhouetteness)->ArgName("kind")->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
 
 void edgeCurves(benchmark::State& state) {
   const Ball ball(5);
@@ -97,6 +97,69 @@ BENCHMARK(edgeCurves)
     ->Args({1, 1})
     ->Args({2, 1})
     ->Unit(benchmark::kMicrosecond);
+
+// Which edges bend, one thread: by clusters, or edge by edge in the same vectors (no cluster is passed over). Where the
+// two rows meet is the break-even of the search.
+void classification(benchmark::State& state) {
+  const Ball ball(static_cast<int>(state.range(0)));
+  const bool linear = state.range(1) != 0;
+  silhouette::Parameters parameters;
+  parameters.tolerance = 0.25f;
+  const silhouette::Crew crew(0);
+  silhouette::EdgeTest test;
+  silhouette::RobustEnds robust;
+  std::vector<silhouette::CurveOffsets> curves;
+  silhouette::EdgeClusters clusters;
+  test.prepare(ball.shape, ball.topology, parameters, crew);
+  silhouette::computeEdgeCurves(ball.shape, ball.topology, {parameters.tangents, false}, crew, robust,
+                                curves);
+  clusters.build(ball.shape, ball.topology);
+  clusters.update(ball.shape, ball.topology, test, curves, {}, parameters, crew);
+  silhouette::EdgeClusters::Eye eye = clusters.eyeOf(ball.view(), parameters);
+  if (linear) {
+    eye.tolerance = 0.0f;
+    eye.beta = 1e30f;
+  }
+  std::vector<float> alphas(silhouette::kEdgesPerCluster);
+  float scale = 0.0f;
+  for (auto _ : state) {
+    std::uint64_t bends = 0;
+    for (std::size_t c = 0; c < clusters.count(); ++c)
+      bends ^= clusters.classify(c, eye, test, alphas, scale);
+    benchmark::DoNotOptimize(bends);
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ball.topology.edges().size()));
+}
+BENCHMARK(classification)
+    ->ArgNames({"level", "linear"})
+    ->ArgsProduct({{0, 1, 2, 3, 4, 6, 8}, {0, 1}})
+    ->Unit(benchmark::kMicrosecond);
+
+// The goal: at most 1 ms per million edges (1e9 items a second) of a mesh with 1.3 million triangles on two threads; with
+// no edge that bends by a quarter of a pixel, and with all that the contour comes near to, however little they bend.
+void classificationOfMany(benchmark::State& state) {
+  const Ball ball(8);
+  Workers workers(2);
+  silhouette::Refiner refiner(ball.shape, ball.topology, workers);
+  silhouette::Parameters parameters;
+  if (state.range(0) != 0) parameters.segments = 1;
+  silhouette::RefinedStream stream;
+  silhouette::RefineReport report;
+  const silhouette::View view = ball.view();
+  refiner.refine(view, parameters, stream, &report);
+  for (auto _ : state) {
+    refiner.refine(view, parameters, stream, &report);
+    state.SetIterationTime(1e-3 * report.classifyMs);
+  }
+  state.counters["bending"] = static_cast<double>(report.smoothEdges);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ball.topology.edges().size()));
+}
+BENCHMARK(classificationOfMany)
+    ->ArgName("many")
+    ->Arg(0)
+    ->Arg(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 
 void refine(benchmark::State& state, Method method, double tolerance) {
   const Ball ball(static_cast<int>(state.range(0)));

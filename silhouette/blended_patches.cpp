@@ -256,26 +256,31 @@ Patch Pass::patchOf(std::size_t triangle, const Records& records) const {
 }
 
 // Whether a triangle can do without vertices inside: what its sides span passes within the tolerance of the patch, in
-// the middle where three sides are divided or none, else halfway between the two sides that are joined.
+// the middle, and halfway between the two sides that are joined where there are.
 bool Pass::passesBare(const Patch& patch, const Records& records, const Pattern& pattern) const {
   const std::uint32_t k = pattern.firstDivided(), divided = pattern.dividedSides();
-  const auto middle = [&](std::uint32_t side) {
-    return patch.alphas[side % 3] * curveOffset(patch.sides[side % 3], 0.5f);
+  const auto onSide = [&](std::uint32_t side, float t) {
+    return patch.alphas[side % 3] * curveOffset(patch.sides[side % 3], t);
   };
-  vec3 weights(kThird), spanned(0.0f);
-  if (divided == 3) spanned = (middle(0) + middle(1) + middle(2)) / 3.0f;
-  if (divided == 1 || divided == 2) {
-    weights = vec3(0.25f);
-    weights[static_cast<int>((k + 3 - divided) % 3)] = 0.5f;
-    spanned = 0.5f * (divided == 2 ? middle(k) + middle(k + 1) : middle(k));
-  }
-  const vec3 wanted = patch.offset(weights.x, weights.y, weights.z), apart = wanted - spanned;
   float scale = 0.0f;
   for (const SmoothEdge* record : records)
     if (record != nullptr) scale = std::max(scale, record->scale);
-  if (dot(apart, apart) * (scale * scale) <= parameters.tolerance * parameters.tolerance) return true;
-  const vec3 flat = patch.flatPoint(weights.x, weights.y, weights.z);
-  return bound.distance(flat + spanned, flat + wanted) <= parameters.tolerance;
+  const auto passes = [&](const vec3& weights, const vec3& spanned) {
+    const vec3 wanted = patch.offset(weights.x, weights.y, weights.z), apart = wanted - spanned;
+    if (dot(apart, apart) * (scale * scale) <= parameters.tolerance * parameters.tolerance) return true;
+    const vec3 flat = patch.flatPoint(weights.x, weights.y, weights.z);
+    return bound.distance(flat + spanned, flat + wanted) <= parameters.tolerance;
+  };
+  const vec3 center(kThird);
+  if (divided == 0) return passes(center, vec3(0.0f));
+  if (divided == 3) return passes(center, (onSide(0, 0.5f) + onSide(1, 0.5f) + onSide(2, 0.5f)) / 3.0f);
+  // A ladder's apex is the end of side k, a fan's the corner opposite to it.
+  vec3 halfway(0.25f);
+  halfway[static_cast<int>((k + 3 - divided) % 3)] = 0.5f;
+  if (divided == 1)
+    return passes(halfway, 0.5f * onSide(k, 0.5f)) && passes(center, (2.0f * kThird) * onSide(k, 0.5f));
+  return passes(halfway, 0.5f * (onSide(k, 0.5f) + onSide(k + 1, 0.5f))) &&
+         passes(center, 0.5f * (onSide(k, kThird) + onSide(k + 1, 2.0f * kThird)));
 }
 
 // The steps of the grid inside follow the largest error of the spokes from the corners to the midpoint, by its size at

@@ -6,31 +6,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "apps/scene/frame.h"
 #include "apps/scene/load.h"
+#include "model_files.h"
 
 namespace limn::scene {
 namespace {
 
-namespace fs = std::filesystem;
 using silhouette::Method;
 
 constexpr std::size_t kMostTriangles = 1200;
-
-std::vector<std::string> models() {
-  std::vector<std::string> found{"builtin:icosphere-320", "builtin:torus-576", "builtin:knot-480",
-                                 "builtin:pawn"};
-  const fs::path folder = fs::path(LIMN_MODELS_DIR) / "coarse-and-fine";
-  std::vector<std::string> files;
-  if (fs::is_directory(folder))
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-      if (entry.path().extension() == ".glb" && entry.file_size() < 100'000) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  found.insert(found.end(), files.begin(), files.end());
-  return found;
-}
 
 bool isClosed(const silhouette::Topology& topology) {
   const silhouette::TopologyReport& report = topology.report();
@@ -130,12 +116,7 @@ TEST_P(Coverage, OfAClosedModelIsEvenFlatAndRefined) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Coverage, testing::ValuesIn(models()), [](const auto& model) {
-  std::string name = model.param.substr(model.param.find_last_of(":/") + 1);
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(Models, Coverage, testing::ValuesIn(smallModels()), testNameOf);
 
 }  // namespace
 }  // namespace limn::scene

@@ -99,5 +99,52 @@ TEST(Continuity, ChangeShrinksWithTheStep) {
   }
 }
 
+// Wherever a step along the path moves an edge, its halves are followed down to steps of 1e-7: what is left there is a
+// jump, and within the tolerance.
+TEST(Continuity, EdgesJumpByNoMoreThanTheTolerance) {
+  for (const Shape& shape : {icosphere(1), icosphere(2), cylinder(9), shaken(torus(12, 8), 5)}) {
+    const Mesh mesh = shape.mesh();
+    Workers workers(1);
+    const Topology topology(mesh);
+    Refiner refiner(mesh, topology, workers);
+    const Parameters parameters;
+    RefinedStream stream;
+    using Surface = std::vector<dvec3>;
+    const auto viewAt = [](double a) {
+      return perspectiveFrom(vec3(5.0 * std::cos(a), 1.1, 5.0 * std::sin(a)));
+    };
+    const auto surfaceAt = [&](double a) -> Surface {
+      refiner.refine(viewAt(a), parameters, stream);
+      return samples(mesh, stream);
+    };
+    const auto change = [&](double at, const Surface& a,
+                            const Surface& b) {  // pixels, at the middles of edges
+      const View view = viewAt(at);
+      const auto project = [&](const dvec3& p) {
+        const dvec3 v(glm::dmat4(view.modelToView) * glm::dvec4(p, 1.0));
+        return static_cast<double>(view.projection.pixelsX) / -v.z * glm::dvec2(v);
+      };
+      double largest = 0.0;
+      for (std::size_t i = 0; i < a.size(); ++i)
+        if (i % 4 != 3) largest = std::max(largest, glm::length(project(a[i]) - project(b[i])));
+      return largest;
+    };
+    for (int k = 0; k < 60; ++k) {
+      double from = 0.3 + 0.01 * k, to = from + 0.01;
+      Surface first = surfaceAt(from), last = surfaceAt(to);
+      while (to - from > 1e-7 && change(from, first, last) > 0.5 * parameters.tolerance) {
+        const double half = 0.5 * (from + to);
+        const Surface middle = surfaceAt(half);
+        const bool left = change(from, first, middle) > change(from, middle, last);
+        (left ? to : from) = half;
+        (left ? last : first) = middle;
+      }
+      if (to - from <= 1e-7) {
+        EXPECT_LT(change(from, first, last), 1.05 * parameters.tolerance) << shape.name << " at " << from;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace limn::silhouette::test
