@@ -7,6 +7,9 @@
 // A frame: visible vertices → crossed edges and their silhouette points → silhouette triangles and their
 // segments → lowered points → vertices on edges → pieces. Every stage counts, sums and fills by blocks of
 // indices, so the stream is the same for any number of threads.
+//
+// However wrong normals are, a new vertex is within 0.9 of its triangle's longest side of where its origin is on the flat
+// one: 0.3 for the bridge, 0.3 of at most 1.6 sides for the segment, 0.09 for a polyline outside its curve.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -561,8 +564,17 @@ class SilhouetteCurves final : public MethodState {
   }
 
   void levelScratch() override {
-    levelCapacity(scratch_, &Scratch::blockCounts, &Scratch::edges, &Scratch::triangles, &Scratch::segments,
-                  &Scratch::segmentTriangles, &Scratch::planes, &Scratch::lowered, &Scratch::slots);
+    levelCapacity(scratch_, &Scratch::blockCounts, &Scratch::edges, &Scratch::recordOf, &Scratch::triangles,
+                  &Scratch::segments, &Scratch::segmentOf, &Scratch::segmentTriangles, &Scratch::planes,
+                  &Scratch::loweredOf, &Scratch::lowered, &Scratch::slots);
+    const auto searched = [](auto EdgeSearch::*vector) {
+      return [vector](Scratch & slot) -> auto& {
+        return slot.search.*vector;
+      };
+    };
+    levelCapacity(scratch_, searched(&EdgeSearch::heights), searched(&EdgeSearch::visible),
+                  searched(&EdgeSearch::planeHeights), searched(&EdgeSearch::states),
+                  searched(&EdgeSearch::crossings), searched(&EdgeSearch::alphas));
   }
 
  private:
