@@ -42,19 +42,18 @@ class Fragments {
       return hn::Add(ramp, hn::Set(d, static_cast<std::int32_t>(slot | s << kSampleShift)));
     };
     VI empty = hn::Zero(d);
-    forEach(std::make_index_sequence<kSamples>(), [&](std::size_t s) HWY_ATTR {
+    forEach(std::make_index_sequence<kSamples>(), [&](auto s) HWY_ATTR {
+      constexpr std::size_t kSample = s;
       // The pixels whose first sample of a triangle this is, and how many samples show it.
       const MI free = hn::Eq(ids[s], none);
       empty = hn::Sub(empty, hn::VecFromMask(d, free));
       MI first = hn::AndNot(free, pixels);
       VI count = hn::Set(d, 1);
-      forEach(std::make_index_sequence<kSamples>(), [&](std::size_t t) HWY_ATTR {
-        if (t == s) return;
-        const MI same = hn::Eq(ids[t], ids[s]);
-        if (t < s)
-          first = hn::AndNot(same, first);
-        else
-          count = hn::Sub(count, hn::VecFromMask(d, same));
+      forEach(std::make_index_sequence<kSamples>(), [&](auto t) HWY_ATTR {
+        if constexpr (t < kSample)
+          first = hn::AndNot(hn::Eq(ids[t], ids[s]), first);
+        else if constexpr (t > kSample)
+          count = hn::Sub(count, hn::VecFromMask(d, hn::Eq(ids[t], ids[s])));
       });
       if (!hn::AllFalse(d, first))
         push(ids[s], hn::Add(placeOf(s), hn::ShiftLeft<kCountShift>(count)), first);
@@ -102,7 +101,6 @@ class Fragments {
   }
 
   void flush() {
-    const F f;
     if (count_ == 0) return;
     const std::size_t padded = (count_ + kLanes - 1) / kLanes * kLanes;
     for (std::size_t i = count_; i < padded; ++i) id_[i] = id_[0], tag_[i] = tag_[0];

@@ -176,7 +176,7 @@ class Rows {
     for (int column = 0; column < box.columns; column += static_cast<int>(kLanes)) {
       VI e[kSamples][3];
       VF zX[kSamples];
-      forEach(samples, [&](std::size_t s) HWY_ATTR {
+      forEach(samples, [&](auto s) HWY_ATTR {
         for (int k = 0; k < 3; ++k)
           e[s][k] = hn::Add(hn::Set(d, box.value[s][k] + box.stepX[k] * column),
                             hn::Mul(ramp, hn::Set(d, box.stepX[k])));
@@ -187,7 +187,7 @@ class Rows {
       std::size_t o = tile_.offset(0, box.x0 + column, box.y0);
       for (int row = 0; row < rows; ++row, o += stride) {
         MI any = hn::FirstN(d, 0);
-        forEach(samples, [&](std::size_t s) HWY_ATTR {
+        forEach(samples, [&](auto s) HWY_ATTR {
           float* const depth = depths + o + s * plane;
           std::uint32_t* const id = ids + o + s * plane;
           const VF z = hn::Add(hn::Set(f, depthStarts[s][row]), zX[s]);

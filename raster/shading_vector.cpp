@@ -101,12 +101,12 @@ class Shading {
   HWY_INLINE void block(int x, int y) {
     const I d;
     VI all[kSamples];
-    forEach(std::make_index_sequence<kSamples>(), [&](std::size_t s) HWY_ATTR { all[s] = idsAt(s, x, y); });
+    forEach(std::make_index_sequence<kSamples>(), [&](auto s) HWY_ATTR { all[s] = idsAt(s, x, y); });
     const VI ids = all[0];
     const MI inside = hn::FirstN(d, static_cast<std::size_t>(tile_.width - x));
     MI whole = inside;  // pixels all of whose samples show the same
     forEach(std::make_index_sequence<kSamples>(),
-            [&](std::size_t s) HWY_ATTR { whole = hn::And(whole, hn::Eq(ids, all[s])); });
+            [&](auto s) HWY_ATTR { whole = hn::And(whole, hn::Eq(ids, all[s])); });
     if (tile_.overlaid) whole = hn::And(whole, notBlended(x, y));
     const MI nothing = hn::Eq(ids, hn::Set(d, -1)), seen = hn::AndNot(nothing, whole);
     if (!hn::AllFalse(d, hn::And(nothing, whole))) store(hn::Set(d, background_), x, y);
@@ -246,13 +246,13 @@ class Shading {
     const std::uint32_t* row = &tile_.ids[tile_.offset(0, x, y)];
     MI complex = hn::FirstN(d, 0);
     for (MI todo = seen; !hn::AllFalse(d, todo);) {
-      const Material* material = nullptr;
+      const std::uint32_t first = row[static_cast<std::size_t>(hn::FindFirstTrue(d, todo))];
+      const Material* const material = tile_.surfaceOf(tile_.records[first]).material;
       MI mine = hn::FirstN(d, 0);
       bool plain = true;
       AttributeVector attributes;
       forTriangles(row, ids, todo, [&](Record& record, MI same) {
         const Surface surface = tile_.surfaceOf(record);
-        if (material == nullptr) material = surface.material;
         if (surface.material != material) return;
         mine = hn::Or(mine, same);
         if (isComplex(*material) || (material->baseColorTexture == nullptr && !surface.hasColors)) return;

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "hwy/highway.h"
@@ -42,10 +43,10 @@ HWY_INLINE VF dot3(VF a, VF b, VF c, VF d, VF e, VF f) {
   return hn::Add(hn::Add(hn::Mul(a, b), hn::Mul(c, d)), hn::Mul(e, f));
 }
 
-/// body(0), body(1) …: unrolled, so that what is kept per sample can stay in registers.
+/// body(0), body(1) …, each with a constant: unrolled, so that what is kept per sample can stay in registers.
 template <std::size_t... kIndices, class Body>
 HWY_INLINE void forEach(std::index_sequence<kIndices...> /*indices*/, const Body& body) {
-  (body(kIndices), ...);
+  (body(std::integral_constant<std::size_t, kIndices>()), ...);
 }
 
 /// Bit i: lane i is set.
