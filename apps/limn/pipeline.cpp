@@ -74,12 +74,14 @@ void Pipeline::submit(std::unique_ptr<Picture> picture) {
     const std::lock_guard lock(mutex_);
     ++count_;
     waiting_.push_back(std::move(picture));
-    if (threads_ > 1) ++enqueued_;
+    // With one thread, acquire() and drain() finish it. They also do where the workers are busy drawing: tasks that have not
+    // begun must not pile up, so there are no more than can run, and each finishes all it finds.
+    if (enqueued_ + 1 >= static_cast<std::size_t>(threads_)) return;
+    ++enqueued_;
   }
-  if (threads_ == 1) return;  // acquire() and drain() finish it
   arena_.enqueue([this] {
     std::unique_lock lock(mutex_);
-    finishOne(lock);
+    while (!waiting_.empty()) finishOne(lock);
     --enqueued_;
     changed_.notify_all();
   });
