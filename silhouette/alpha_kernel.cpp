@@ -33,7 +33,8 @@ V crossing(V low, V high, V least, V most, V beta) {
   const V a = hn::Abs(low), b = hn::Abs(high);
   const V ends = hn::Mul(hn::Mul(hn::Set(tag, 2.0f), hn::Div(a, hn::Add(a, b))), b);
   const V beyond = hn::IfThenElse(hn::Gt(low, zero), hn::Neg(least), most);
-  const V within = hn::IfThenElseZero(hn::Gt(beyond, zero), hn::Div(beyond, hn::Add(beyond, ends)));
+  const V within = hn::IfThenElseZero(
+      hn::Gt(beyond, zero), hn::Div(beyond, hn::Add(beyond, hn::Mul(hn::Set(tag, kFadeShare), ends))));
   const V spread = hn::Sub(hn::Max(high, most), hn::Min(low, least));
   const V outside = hn::Sub(one, hn::Div(ends, hn::Mul(beta, spread)));
   const V alpha = hn::IfThenElse(hn::Gt(outside, within), outside, within);

