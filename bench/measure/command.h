@@ -29,7 +29,7 @@ struct Options {
   bool quick = false;
   bool perView = false;
   std::string dumpFolder;
-  std::string plotFolder;  ///< trade: tables for gnuplot
+  std::string plotFolder;               ///< trade: tables for gnuplot
   double arc = 6.0;                     ///< coherence: degrees of camera path
   std::vector<double> steps{0.4, 0.1};  ///< coherence: degrees per frame
   silhouette::Parameters parameters;    ///< but for method and tolerance
