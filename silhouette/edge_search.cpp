@@ -2,16 +2,18 @@
 
 #include "silhouette/contour.h"
 #include "silhouette/facing_kernel.h"
+#include "silhouette/pixel_bound.h"
 
 namespace limn::silhouette {
 namespace {
 
 constexpr std::size_t kItemsPerBlock = 4096;
+constexpr float kUnseen = 0.25f;  // share of the tolerance
 
 }  // namespace
 
 void EdgeSearch::run(const Mesh& mesh, const Topology& topology, const CurveSet& curves, const View& view,
-                     const Crew& crew) {
+                     const Parameters& parameters, const Crew& crew) {
   const std::size_t edges = curves.links.size();
   heights.resize(mesh.positions.size());
   visible.resize(mesh.positions.size());
@@ -23,6 +25,13 @@ void EdgeSearch::run(const Mesh& mesh, const Topology& topology, const CurveSet&
 
   const RingTest ring{mesh, topology, curves, view, visible, heights, crossings};
   const float largest = ring.largestProduct();
+  const PixelBound bound(view);
+  // On a fine mesh that is nearly every edge by the contour, and telling costs less than looking around it.
+  const auto isSeen = [&](std::size_t e) {
+    const std::array<std::uint32_t, 2>& ends = curves.links[e].ends;
+    return parameters.segments > 0 || bound.chordError(mesh.positions[ends[0]], mesh.positions[ends[1]],
+                                                       curves.curves[e]) > kUnseen * parameters.tolerance;
+  };
   crew.forBlocks(edges, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) states[e] = stateOf(e, mesh, curves, view, largest);
   });
@@ -31,7 +40,8 @@ void EdgeSearch::run(const Mesh& mesh, const Topology& topology, const CurveSet&
       if (states[e] == 0) continue;
       const EdgeLink& link = curves.links[e];
       const bool mayBend = (states[e] & kMayBend) != 0, crossed = (states[e] & kCrossed) != 0;
-      alphas[e] = link.always ? 1.0f : mayBend ? ring.alpha(static_cast<std::uint32_t>(e)) : 0.0f;
+      const bool looks = mayBend && !link.always && isSeen(e);
+      alphas[e] = link.always ? 1.0f : looks ? ring.alpha(static_cast<std::uint32_t>(e)) : 0.0f;
       if (alphas[e] > 0.0f || (crossed && link.bridged)) states[e] |= kListed;
     }
   });

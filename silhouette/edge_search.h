@@ -23,8 +23,9 @@ struct EdgeSearch {
   std::vector<std::array<float, 2>> crossings;  ///< per edge that has silhouette points: where, for each face
   std::vector<float> alphas;  ///< per edge that is listed: the share of its curve that is shown
 
+  /// Curves that stay within a quarter of the tolerance of their chords count as straight; not so with fixed segments.
   void run(const Mesh& mesh, const Topology& topology, const CurveSet& curves, const View& view,
-           const Crew& crew);
+           const Parameters& parameters, const Crew& crew);
 
   /// Whether the edge has silhouette points or shows its curve.
   bool isListed(std::size_t e) const { return (states[e] & kListed) != 0; }

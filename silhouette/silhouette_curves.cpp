@@ -132,7 +132,7 @@ struct Pass {
 
 void Pass::run() {
   const auto start = std::chrono::steady_clock::now();
-  scratch.search.run(mesh, topology, prepared, view, crew);
+  scratch.search.run(mesh, topology, prepared, view, parameters, crew);
   findEdges();
   report.classifyMs =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

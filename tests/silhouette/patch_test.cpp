@@ -180,9 +180,9 @@ TEST(Silhouetteness, FollowsTheContour) {
   EXPECT_EQ(crossingSilhouetteness({-0.2f, 0.1f, {0.3f, 0.4f}}, kBeta), 1.0f);
   EXPECT_EQ(crossingSilhouetteness({0.0f, 0.1f, {0.3f, 0.4f}}, 0.0f), 1.0f);
   EXPECT_EQ(crossingSilhouetteness({0.2f, 0.2f, {0.5f, 0.4f}}, kBeta), 0.0f);
-  // The contour crosses a face at a quarter of its height.
-  EXPECT_FLOAT_EQ(crossingSilhouetteness({0.1f, 0.1f, {-0.3f, 0.4f}}, kBeta), 0.75f);
-  EXPECT_FLOAT_EQ(crossingSilhouetteness({-0.1f, -0.1f, {-0.3f, 0.3f}}, kBeta), 0.75f);
+  // The contour crosses a face at a quarter of its height: c/(c + 0.6 m).
+  EXPECT_FLOAT_EQ(crossingSilhouetteness({0.1f, 0.1f, {-0.3f, 0.4f}}, kBeta), 0.3f / 0.36f);
+  EXPECT_FLOAT_EQ(crossingSilhouetteness({-0.1f, -0.1f, {-0.3f, 0.3f}}, kBeta), 0.3f / 0.36f);
   // Each facing moves through zero in small steps, the others wherever they are.
   Random random{std::mt19937(9)};
   for (int k = 0; k < 2000; ++k) {
