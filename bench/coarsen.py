@@ -101,7 +101,7 @@ def draw(file, models, folder):
                 out.writelines(f"{x} {y}\n" for x, y in points)
             style = "dashtype 2" if kind == "plain" else "linewidth 2"
             lines.append(f'"{data}" with linespoints linecolor {number + 1} {style} title "{name}, {kind}"')
-    script = (f'set terminal svg size 800,560; set output "{file}"; set logscale xy; set grid; set key outside\n'
+    script = (f'set terminal svg size 800,560; set output "{file}"; set logscale xy; set xrange [5000:200000]; set grid; set key outside\n'
               'set xlabel "bytes of the file"; set ylabel "mean distance of the outline, pixels of 1024"\n'
               "plot " + ", ".join(lines) + "\n")
     subprocess.run(["gnuplot"], input=script, text=True, check=True)
