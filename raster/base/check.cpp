@@ -7,8 +7,7 @@
 
 namespace limn {
 
-void require(bool holds, std::string_view what, const char* function) {
-  if (holds) return;
+void detail::requirementFailed(std::string_view what, const char* function) {
   throw std::invalid_argument(std::string(function) + ": " + std::string(what));
 }
 

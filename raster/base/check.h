@@ -7,11 +7,8 @@
 
 namespace limn {
 
-/// Throws std::invalid_argument("FUNCTION: what") unless `holds`. (The builtin is known to g++ and clang++ alike; clang++
-/// before 15 lacks what std::source_location needs.)
-void require(bool holds, std::string_view what, const char* function = __builtin_FUNCTION());
-
 namespace detail {
+[[noreturn]] void requirementFailed(std::string_view what, const char* function);
 [[noreturn]] void assertionFailed(const char* condition, const char* file, int line, const double* values,
                                   int count);
 template <class... T>
@@ -20,6 +17,12 @@ template <class... T>
   assertionFailed(condition, file, line, array + 1, static_cast<int>(sizeof...(values)));
 }
 }  // namespace detail
+
+/// Throws std::invalid_argument("FUNCTION: what") unless `holds`. (The builtin is known to g++ and clang++ alike; clang++
+/// before 15 lacks what std::source_location needs. Inline, so that compilers and analysers see what holds afterwards.)
+inline void require(bool holds, std::string_view what, const char* function = __builtin_FUNCTION()) {
+  if (!holds) detail::requirementFailed(what, function);
+}
 
 }  // namespace limn
 
