@@ -14,13 +14,12 @@ raster_ms              and the rasterizer
 ns_per_added_triangle  what the frame takes longer, per triangle that it has more
 disturbed              the median is more than 1.5 times the least: others used the machine
 """
-import argparse
 import glob
 import json
 import os
 import sys
 
-from race import Programs
+from race import Programs, options_of
 
 BUILTIN = ["icosphere-320", "torus-576", "knot-480", "pawn", "cone-70"]
 PAIRS = "../shared/models/coarse-and-fine/*-500.glb"
@@ -43,16 +42,6 @@ def scenes(models):
         yield dict(model=LARGE, copies=1, size="1280x800"), [v for v in variants(FEW) if v[0] != "pn"]
 
 
-def measure(programs, scene, some, rounds):
-    best = [None] * len(some)
-    for _ in range(rounds):
-        for i, (method, tolerance) in enumerate(some):
-            seen = programs.frames("limn_bench_frames", scene, method=method, tolerance=tolerance)
-            if best[i] is None or float(seen["min_ms"]) < float(best[i]["min_ms"]):
-                best[i] = seen
-    return best
-
-
 def row(scene, method, tolerance, seen, flat):
     ms, flat_ms = float(seen["min_ms"]), float(flat["min_ms"])
     more = int(seen["tris_drawn"]) - int(flat["tris_drawn"])
@@ -66,16 +55,14 @@ def row(scene, method, tolerance, seen, flat):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("models", nargs="*", metavar="MODEL")
-    arguments.add_argument("--build", default="build/release/bench")
-    arguments.add_argument("--rounds", type=int, default=3)
-    arguments.add_argument("--seconds", type=float, default=0.2)
-    arguments = arguments.parse_args()
+    parser = options_of(__doc__, rounds=3, seconds=0.2)
+    parser.add_argument("models", nargs="*", metavar="MODEL")
+    arguments = parser.parse_args()
     programs = Programs(arguments.build, arguments.seconds)
     rows = []
     for scene, some in scenes(arguments.models):
-        best = measure(programs, scene, some, arguments.rounds)
+        best = programs.least(scene, [dict(method=method, tolerance=tolerance) for method, tolerance in some],
+                              arguments.rounds)
         rows += [row(scene, *variant, seen, best[0]) for variant, seen in zip(some, best)]
     print("[\n" + ",\n".join("  " + json.dumps(r) for r in rows) + "\n]")
     if any(r["disturbed"] for r in rows):

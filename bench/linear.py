@@ -7,12 +7,11 @@ each best, and, with --picture, a drawing of both.
 Triangles: one torus of 1 to 8 million, and two of 8, in a window of 1280x800. Pixels: 60 × knot-480, windows of 64² to
 8192². Half of view 0 is covered. A time is the least of the frames drawn in --seconds.
 """
-import argparse
 import shutil
 import subprocess
 import sys
 
-from race import Programs
+from race import Programs, options_of
 
 TORI = {1: "torus:1024:512", 2: "torus:1024:1024", 4: "torus:2048:1024", 8: "torus:2048:2048"}
 SIZES = [64 << k for k in range(8)]
@@ -70,13 +69,13 @@ def draw(path, lines):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--build", default="build/release/bench")
-    arguments.add_argument("--threads", type=int, default=2)
-    arguments.add_argument("--seconds", type=float, default=0.5)
-    arguments.add_argument("--most", type=int, default=16, help="million triangles")
-    arguments.add_argument("--picture")
-    arguments = arguments.parse_args()
+    parser = options_of(__doc__, rounds=None, seconds=0.5)
+    parser.add_argument("--threads", type=int, default=2)
+    parser.add_argument("--most", type=int, default=16, help="million triangles, two or more")
+    parser.add_argument("--picture")
+    arguments = parser.parse_args()
+    if arguments.most < 2:
+        parser.error("--most: a line needs two points; give 2 or more")
     if arguments.picture and not shutil.which("gnuplot"):
         sys.exit("linear.py: --picture needs gnuplot")
     programs = Programs(arguments.build, arguments.seconds)

@@ -26,6 +26,16 @@ def parse(text):
     return {key: value.strip('"') for key, value in re.findall(r'(\w+)=("[^"]*"|\S+)', text)}
 
 
+def options_of(doc, rounds, seconds):
+    """A parser with the options that every race has; `rounds` and `seconds` are their defaults (None: it has no rounds)."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--build", default="build/release/bench", help="the folder with the bench programs")
+    if rounds:
+        parser.add_argument("--rounds", type=int, default=rounds, help="turns; the least time of all counts")
+    parser.add_argument("--seconds", type=float, default=seconds, help="of drawing, in each turn")
+    return parser
+
+
 class Programs:
     """The bench programs of one build."""
 
@@ -55,6 +65,16 @@ class Programs:
     def frames(self, name, scene, **more):
         options = dict(poses=8, seconds=self.seconds, threads=2, scale=self.scale(scene)) | scene | more
         return self.run(name, **options)
+
+    def least(self, scene, variants, rounds):
+        """What limn_bench_frames prints for each of `variants` (its options), drawn in turns: the run with the least min_ms."""
+        best = [None] * len(variants)
+        for _ in range(rounds):
+            for i, options in enumerate(variants):
+                seen = self.frames("limn_bench_frames", scene, **options)
+                if best[i] is None or float(seen["min_ms"]) < float(best[i]["min_ms"]):
+                    best[i] = seen
+        return best
 
 
 class Side:
@@ -136,13 +156,10 @@ def table():
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("rows", nargs="*", metavar="ROW")
-    arguments.add_argument("--build", default="build/release/bench")
-    arguments.add_argument("--rounds", type=int, default=5)
-    arguments.add_argument("--seconds", type=float, default=0.4)
-    arguments.add_argument("--json")
-    arguments = arguments.parse_args()
+    parser = options_of(__doc__, rounds=5, seconds=0.4)
+    parser.add_argument("rows", nargs="*", metavar="ROW")
+    parser.add_argument("--json")
+    arguments = parser.parse_args()
     programs = Programs(arguments.build, arguments.seconds)
     rows = [row for number, row in enumerate(table(), 1)
             if not arguments.rows or any(r == str(number) or (not r.isdigit() and r in row.name) for r in arguments.rows)]

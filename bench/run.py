@@ -22,7 +22,8 @@ from report.build import build as build_report
 
 BENCH = os.path.dirname(os.path.abspath(__file__))
 SHOWN = ("sphere-200", "torus-576", "knot-480", "pawn", "cone-70")
-METHODS = ("flat", "patches", "curves", "pn")
+MEASURED = ("flat", "patches", "curves")  # whose difference from the truth is drawn
+METHODS = (*MEASURED, "pn")
 
 
 def output(*command):
@@ -126,9 +127,9 @@ def draw(run, folder):
             subprocess.run([limn, "render", f"builtin:{model}", "--method", method, "--size", "900x900", "--background",
                             "#ffffff", "--quiet", "-o", picture], check=True)
             run.pictures[f"frame/{model}/{method}"] = picture
-        subprocess.run([measure, "outline", "--model", f"builtin:{model}", "--method", "flat,patches,curves", "--seed", "5",
+        subprocess.run([measure, "outline", "--model", f"builtin:{model}", "--method", ",".join(MEASURED), "--seed", "5",
                         "--views", "1", "--dump", folder], check=True, capture_output=True)
-        for method in METHODS[:3]:
+        for method in MEASURED:
             for picture in glob.glob(os.path.join(folder, f"builtin-{model}-{method}-*.png")):
                 run.pictures[f"difference/{model}/{method}"] = picture
     for data in sorted(glob.glob(run.file("trade-*.dat"))):

@@ -9,10 +9,9 @@ The methods of a row are timed in turns, in short runs; each one's time is the l
 be had are stood in for by shapes of their kind, named in the row. Models are looked for in FOLDER/coarse-and-fine; rows
 whose file is not there are left out. Prints a Markdown table.
 """
-import argparse
 import os
 
-from race import Programs
+from race import Programs, options_of
 
 # Of the paper: name, triangles, PN triangles and level, the method's triangles, frames per second drawn directly, with PN
 # triangles and with silhouette curves in perspective; then the mesh that stands for it.
@@ -40,12 +39,9 @@ def cells(programs, row, model, arguments):
     methods = {"flat": {}, "pn": dict(method="pn", segments=level + 1),
                "patches": dict(method="patches", tolerance=arguments.tolerance),
                "curves": dict(method="curves", tolerance=arguments.tolerance)}
-    best, drawn = {}, {}
-    for _ in range(arguments.rounds):
-        for method, options in methods.items():
-            seen = programs.frames("limn_bench_frames", scene, **options)
-            best[method] = min(best.get(method, float("inf")), float(seen["min_ms"]))
-            drawn[method] = float(seen["tris_drawn"]) / copies
+    seen = dict(zip(methods, programs.least(scene, list(methods.values()), arguments.rounds)))
+    best = {method: float(run["min_ms"]) for method, run in seen.items()}
+    drawn = {method: float(run["tris_drawn"]) / copies for method, run in seen.items()}
     kind = os.path.splitext(stands_in)[0]
     return ([name if kind.startswith(name) else f"{name} ({kind})"] + [f"{drawn[m]:,.0f}" for m in methods] +
             [f"{flat:,}", f"{pn:,}", f"{curves:,}"] + [f"{best[m] / best['flat']:.2f}" for m in methods if m != "flat"] +
@@ -53,13 +49,10 @@ def cells(programs, row, model, arguments):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = options_of(__doc__, rounds=3, seconds=0.3)
     parser.add_argument("rows", nargs="*", metavar="ROW", help="parts of row names; all where there is none")
-    parser.add_argument("--build", default="build/release/bench", help="the folder with the bench programs")
     parser.add_argument("--models", default="../shared/models")
     parser.add_argument("--tolerance", type=float, default=0.5)
-    parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--seconds", type=float, default=0.3)
     parser.add_argument("--threads", type=int, default=2)
     arguments = parser.parse_args()
     programs = Programs(arguments.build, arguments.seconds)

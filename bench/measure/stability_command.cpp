@@ -5,42 +5,53 @@
 #include "bench/measure/stability.h"
 
 namespace limn::measure {
+namespace {
+
+struct Result {
+  const char* name;
+  const char* unit;
+  double largest, bound;
+  std::size_t cases;
+  const char* domain;
+  const char* outside;
+};
+
+// Says it, and makes a row of it.
+Json rowOf(const Result& r) {
+  const bool holds = r.largest <= r.bound;
+  std::fprintf(stderr, "%-34s %12.4g %12.4g  %s%s\n", r.name, r.largest, r.bound, r.unit,
+               holds ? "" : "  BROKEN");
+  return {{"kernel", r.name}, {"unit", r.unit},   {"largest", r.largest}, {"bound", r.bound},
+          {"holds", holds},   {"cases", r.cases}, {"domain", r.domain},   {"outside", r.outside}};
+}
+
+}  // namespace
 
 int runStability(const Options& options) {
   constexpr std::uint64_t kSeed = 20040601;
   const std::size_t cases = options.quick ? 20000 : 400000;
+  const std::uint64_t seed = options.seed >= 0 ? static_cast<std::uint64_t>(options.seed) : kSeed;
   std::vector<Json> rows;
   std::fprintf(stderr, "%-34s %12s %12s  %s\n", "kernel", "largest", "bound", "unit");
-  const auto tell = [](const char* name, double largest, double bound, const char* unit) {
-    std::fprintf(stderr, "%-34s %12.4g %12.4g  %s%s\n", name, largest, bound, unit,
-                 largest <= bound ? "" : "  BROKEN");
-  };
   for (const auto& checks : {baseChecks(), silhouetteChecks(), rasterChecks()}) {
     for (const KernelCheck& check : checks) {
-      const double largest =
-          check.largestError(options.seed >= 0 ? static_cast<std::uint64_t>(options.seed) : kSeed, cases);
-      tell(check.kernel, largest, check.bound, check.unit);
-      rows.push_back({{"kernel", check.kernel},
-                      {"unit", check.unit},
-                      {"largest", largest},
-                      {"bound", check.bound},
-                      {"holds", largest <= check.bound},
-                      {"cases", cases},
-                      {"domain", check.domain},
-                      {"outside", check.outside}});
+      rows.push_back(rowOf({.name = check.kernel,
+                            .unit = check.unit,
+                            .largest = check.largestError(seed, cases),
+                            .bound = check.bound,
+                            .cases = cases,
+                            .domain = check.domain,
+                            .outside = check.outside}));
     }
   }
   for (const ExtremeCheck& check : extremeChecks()) {
-    const double error = check.error();
-    tell(check.name, error, check.bound, check.unit);
-    rows.push_back({{"kernel", check.name},
-                    {"unit", check.unit},
-                    {"largest", error},
-                    {"bound", check.bound},
-                    {"holds", error <= check.bound},
-                    {"cases", 1},
-                    {"domain", check.meaning},
-                    {"outside", ""}});
+    rows.push_back(rowOf({.name = check.name,
+                          .unit = check.unit,
+                          .largest = check.error(),
+                          .bound = check.bound,
+                          .cases = 1,
+                          .domain = check.meaning,
+                          .outside = ""}));
   }
   print(rows);
   return 0;

@@ -33,31 +33,38 @@ glm::vec3 randomSeen(Extremes& random, const Projection& projection) {
           static_cast<float>(-depth)};
 }
 
-double snapError(std::uint64_t seed, std::size_t cases) {
+// The largest error that `compare(map, projection, point, largest)` sees at points in sight.
+template <class Compare>
+double largestOfSeen(std::uint64_t seed, std::size_t cases, const Compare& compare) {
   Extremes random(seed);
   Largest largest;
   for (std::size_t i = 0; i < cases; ++i) {
     const Projection projection = randomProjection(random, random.magnitude(1e-6, 1e6));
     const glm::vec3 point = randomSeen(random, projection);
-    const raster::ScreenVertex v = raster::ScreenMap(projection).project(point);
-    const Vec3L p(point);
-    largest.see(v.x / 256.0L - (projection.width / 2.0L - p.x / p.z * projection.pixelsX));
-    largest.see(v.y / 256.0L - (projection.height / 2.0L + p.y / p.z * projection.pixelsY));
+    compare(raster::ScreenMap(projection), projection, point, largest);
   }
   return largest.value();
 }
 
+double snapError(std::uint64_t seed, std::size_t cases) {
+  return largestOfSeen(
+      seed, cases,
+      [](const raster::ScreenMap& map, const Projection& projection, const glm::vec3& point,
+         Largest& largest) {
+        const raster::ScreenVertex v = map.project(point);
+        const Vec3L p(point);
+        largest.see(v.x / 256.0L - (projection.width / 2.0L - p.x / p.z * projection.pixelsX));
+        largest.see(v.y / 256.0L - (projection.height / 2.0L + p.y / p.z * projection.pixelsY));
+      });
+}
+
 double depthError(std::uint64_t seed, std::size_t cases) {
-  Extremes random(seed);
-  Largest largest;
-  for (std::size_t i = 0; i < cases; ++i) {
-    const Projection projection = randomProjection(random, random.magnitude(1e-6, 1e6));
-    const glm::vec3 point = randomSeen(random, projection);
-    const raster::ScreenMap map(projection);
-    const double depth = map.viewDepth(map.project(point).depth);
-    largest.see((depth + double(point.z)) / (std::abs(double(point.z)) * 0x1p-24));
-  }
-  return largest.value();
+  return largestOfSeen(
+      seed, cases,
+      [](const raster::ScreenMap& map, const Projection&, const glm::vec3& point, Largest& largest) {
+        const double depth = map.viewDepth(map.project(point).depth);
+        largest.see((depth + double(point.z)) / (std::abs(double(point.z)) * 0x1p-24));
+      });
 }
 
 // Corners anywhere in the guard band, or close together.
