@@ -55,40 +55,73 @@ void VertexNumbers::beginCluster() {
 ClusterCutter::ClusterCutter(ClusterSet& set, std::size_t triangles, VertexNumbers& numbers)
     : set_(set), numbers_(numbers) {
   set.clusters.clear();
-  set.vertices.clear();
   set.triangles.resize(triangles);
   for (auto& corner : set.corners) corner.resize(triangles + kPadding);
 }
 
 // How many vertices a triangle would add to the cluster.
-int ClusterCutter::freshOf(const std::uint32_t* c) const {
-  int fresh = !numbers_.has(c[0]);
-  fresh += !numbers_.has(c[1]) && c[1] != c[0];
-  return fresh + (!numbers_.has(c[2]) && c[2] != c[0] && c[2] != c[1]);
+std::uint32_t ClusterCutter::freshOf(const std::uint32_t* c) const {
+  std::uint32_t fresh = numbers_.has(c[0]) ? 0 : 1;
+  fresh += !numbers_.has(c[1]) && c[1] != c[0] ? 1 : 0;
+  return fresh + (!numbers_.has(c[2]) && c[2] != c[0] && c[2] != c[1] ? 1 : 0);
 }
 
-void ClusterCutter::add(const std::uint32_t* corners, std::uint32_t triangle, std::uint32_t material) {
-  std::vector<Cluster>& clusters = set_.clusters;
-  if (clusters.empty() || clusters.back().material != material ||
-      clusters.back().triangleCount == kClusterTriangles ||
-      clusters.back().vertexCount + freshOf(corners) > kClusterVertices) {
-    numbers_.beginCluster();
-    Cluster& cluster = clusters.emplace_back();
-    cluster.firstVertex = static_cast<std::uint32_t>(set_.vertices.size());
-    cluster.firstTriangle = static_cast<std::uint32_t>(next_);
-    cluster.material = material;
+bool ClusterCutter::hasRoomFor(const std::uint32_t* corners, std::uint32_t material) const {
+  if (cluster_.triangleCount == 0 || cluster_.material != material ||
+      cluster_.triangleCount == kClusterTriangles)
+    return false;
+  return cluster_.vertexCount + 3U <= kClusterVertices ||
+         cluster_.vertexCount + freshOf(corners) <= kClusterVertices;
+}
+
+void ClusterCutter::begin(std::uint32_t material) {
+  if (cluster_.triangleCount > 0) set_.clusters.push_back(cluster_);
+  numbers_.beginCluster();
+  cluster_ = {cluster_.firstVertex + cluster_.vertexCount, static_cast<std::uint32_t>(next_), 0, 0, material};
+  // One more, for add() writes a vertex before it knows whether it is a fresh one.
+  const std::size_t wanted = std::size_t{cluster_.firstVertex} + kClusterVertices + 1;
+  if (set_.vertices.size() < wanted) set_.vertices.resize(std::max(wanted, set_.vertices.capacity()));
+}
+
+void ClusterCutter::add(std::span<const std::uint32_t> indices, std::uint32_t triangle,
+                        std::uint32_t material) {
+  for (std::size_t i = 0; i < indices.size();) {
+    if (!hasRoomFor(&indices[i], material)) begin(material);
+    // So many fit whatever vertices they have, and one does at least.
+    const std::uint32_t room = static_cast<std::uint32_t>(kClusterVertices - cluster_.vertexCount) / 3U;
+    const std::uint32_t count = std::min(std::max(room, 1U), kClusterTriangles - cluster_.triangleCount + 0U);
+    const auto left = static_cast<std::uint32_t>((indices.size() - i) / 3);
+    fill(&indices[i], std::min(count, left), triangle);
+    triangle += std::min(count, left);
+    i += 3 * std::size_t{std::min(count, left)};
   }
-  Cluster& cluster = clusters.back();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint32_t vertex = corners[k];
-    if (!numbers_.has(vertex)) {
-      numbers_.set(vertex, cluster.vertexCount++);
-      set_.vertices.push_back(vertex);
+}
+
+// Adds triangles that fit.
+void ClusterCutter::fill(const std::uint32_t* corners, std::uint32_t count, std::uint32_t triangle) {
+  // All in locals: bytes are stored, which may alias any member.
+  const VertexNumbers::Words words = numbers_.words();
+  std::uint32_t* vertices = &set_.vertices[cluster_.firstVertex];
+  std::uint32_t* triangles = &set_.triangles[next_];
+  std::uint8_t* numbers[3] = {&set_.corners[0][next_], &set_.corners[1][next_], &set_.corners[2][next_]};
+  std::uint32_t fresh = cluster_.vertexCount;
+  for (std::uint32_t t = 0; t < count; ++t, corners += 3) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t number = words.number(corners[k], fresh);
+      vertices[fresh] = corners[k];
+      numbers[k][t] = static_cast<std::uint8_t>(number);
+      fresh += number == fresh ? 1U : 0U;
     }
-    set_.corners[k][next_] = static_cast<std::uint8_t>(numbers_[vertex]);
+    triangles[t] = triangle + t;
   }
-  set_.triangles[next_++] = triangle;
-  ++cluster.triangleCount;
+  cluster_.vertexCount = static_cast<std::uint16_t>(fresh);
+  cluster_.triangleCount = static_cast<std::uint16_t>(cluster_.triangleCount + count);
+  next_ += count;
+}
+
+void ClusterCutter::finish() {
+  if (cluster_.triangleCount > 0) set_.clusters.push_back(cluster_);
+  set_.vertices.resize(std::size_t{cluster_.firstVertex} + cluster_.vertexCount);
 }
 
 ClusterBounds boundPoints(const Cluster& cluster, const ClusterVertices& v) {

@@ -69,8 +69,21 @@ class VertexNumbers {
   }
   void beginCluster();
   bool has(std::uint32_t vertex) const { return words_[vertex] / kBase == cluster_; }
-  std::uint32_t operator[](std::uint32_t vertex) const { return words_[vertex] % kBase; }
-  void set(std::uint32_t vertex, std::uint32_t number) { words_[vertex] = cluster_ * kBase + number; }
+  /// The words of the vertices and that of number 0 in the cluster, for loops.
+  struct Words {
+    std::uint32_t* words;
+    std::uint32_t first;
+
+    /// The vertex's number in the cluster, which becomes `fresh` if it has none. No branch: there is no telling which
+    /// vertices a triangle shares with those before.
+    std::uint32_t number(std::uint32_t vertex, std::uint32_t fresh) const {
+      const std::uint32_t distance = words[vertex] ^ first;
+      const std::uint32_t number = distance < kBase ? distance : fresh;
+      words[vertex] = first | number;
+      return number;
+    }
+  };
+  Words words() { return {words_.data(), cluster_ * kBase}; }
   std::size_t memoryBytes() const { return words_.capacity() * sizeof words_[0]; }
 
  private:
@@ -86,14 +99,21 @@ class ClusterCutter {
  public:
   /// Empties the set; its memory stays. `triangles` are going to be added, of vertices that `numbers` has room for.
   ClusterCutter(ClusterSet& set, std::size_t triangles, VertexNumbers& numbers);
-  void add(const std::uint32_t* corners, std::uint32_t triangle, std::uint32_t material);
+  /// Triangles of three `indices` each, numbered from `triangle` in the order of submission.
+  void add(std::span<const std::uint32_t> indices, std::uint32_t triangle, std::uint32_t material);
+  /// After the last triangle: the set is complete.
+  void finish();
 
  private:
-  int freshOf(const std::uint32_t* corners) const;
+  std::uint32_t freshOf(const std::uint32_t* corners) const;
+  bool hasRoomFor(const std::uint32_t* corners, std::uint32_t material) const;
+  void begin(std::uint32_t material);
+  void fill(const std::uint32_t* corners, std::uint32_t count, std::uint32_t triangle);
 
   ClusterSet& set_;
   VertexNumbers& numbers_;
   std::size_t next_ = 0;  // triangle of the set
+  Cluster cluster_;       // that is being filled
 };
 
 /// The bounding sphere of a cluster's points.

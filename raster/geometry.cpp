@@ -54,8 +54,9 @@ Geometry::Geometry(const Vertices& vertices, std::span<const std::uint32_t> indi
   ClusterCutter cutter(d.set, d.triangleCount,
                        numbers);  // in the order of submission, as Batch::isReplaced wants it
   for (const Part& part : parts)
-    for (std::uint32_t t = part.firstTriangle; t < part.firstTriangle + part.triangleCount; ++t)
-      cutter.add(&indices[3UL * t], t, part.material);
+    cutter.add(indices.subspan(3UL * part.firstTriangle, 3UL * part.triangleCount), part.firstTriangle,
+               part.material);
+  cutter.finish();
   d.set.points.resize(d.set.vertices.size());
   for (std::size_t i = 0; i < d.set.vertices.size(); ++i)
     d.set.points.set(i, d.positions[d.set.vertices[i]], d.normals[d.set.vertices[i]]);

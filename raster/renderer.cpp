@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -71,12 +72,14 @@ void requireValidStreams(const Frame& frame, Workers& workers) {
     std::atomic<bool> valid = true;
     workers.forBlocks(draw.stream.sourceTriangles.size(), kGrain,
                       [&](std::size_t begin, std::size_t end, int) {
-                        bool good = true;
-                        for (std::size_t t = begin; t < end; ++t)
-                          good &= draw.stream.sourceTriangles[t] < triangles;
-                        for (std::size_t i = 3 * begin; i < 3 * end; ++i)
-                          good &= draw.stream.indices[i] < vertices;
-                        if (!good) valid = false;
+                        const auto largest = [](const std::uint32_t* first, std::size_t count) {
+                          std::uint32_t most = 0;
+                          for (std::size_t i = 0; i < count; ++i) most = std::max(most, first[i]);
+                          return most;
+                        };
+                        if (largest(&draw.stream.sourceTriangles[begin], end - begin) >= triangles ||
+                            largest(&draw.stream.indices[3 * begin], 3 * (end - begin)) >= vertices)
+                          valid = false;
                       });
     require(valid, "stream: an index or source triangle is out of range");
   }

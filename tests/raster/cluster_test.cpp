@@ -37,7 +37,8 @@ TEST(ClusterCutter, KeepsEveryTriangleInOrderAndItsMaterialTogether) {
     const auto materialOf = [](std::size_t t) { return static_cast<std::uint32_t>(t / 250 % 3); };
     ClusterCutter cutter(set, triangles, numbers);
     for (std::size_t t = 0; t < triangles; ++t)
-      cutter.add(&indices[3 * t], static_cast<std::uint32_t>(7 * t), materialOf(t));
+      cutter.add(std::span(indices).subspan(3 * t, 3), static_cast<std::uint32_t>(7 * t), materialOf(t));
+    cutter.finish();
     ASSERT_TRUE(set.isConsistent());
     std::size_t next = 0;
     for (const Cluster& cluster : set.clusters)
@@ -55,9 +56,9 @@ TEST(ClusterCutter, VertexNumbersForgetClustersOfLongAgo) {
   VertexNumbers numbers;
   numbers.reserve(2);
   numbers.beginCluster();
-  numbers.set(1, 5);
+  EXPECT_EQ(numbers.words().number(1, 5), 5U);
   EXPECT_TRUE(numbers.has(1));
-  EXPECT_EQ(numbers[1], 5U);
+  EXPECT_EQ(numbers.words().number(1, 6), 5U);
   EXPECT_FALSE(numbers.has(0));
   for (int i = 0; i < 1 << 24; ++i) {  // more than there are numbers of clusters
     numbers.beginCluster();
