@@ -107,14 +107,11 @@ void placeLinearly(const glm::dmat3& linear, std::span<const glm::vec3> position
 template <class T>
 void interpolate(const Mesh& mesh, const std::vector<silhouette::Origin>& origins,
                  std::span<const T> attribute, std::vector<T>& out) {
-  out.clear();
-  if (attribute.empty()) return;
-  out.reserve(origins.size());
-  for (const silhouette::Origin& origin : origins) {
-    const std::uint32_t* corner = &mesh.indices[3 * std::size_t{origin.triangle}];
-    const float w1 = origin.weights.x, w2 = origin.weights.y;
-    out.push_back(attribute[corner[0]] * (1.0f - w1 - w2) + attribute[corner[1]] * w1 +
-                  attribute[corner[2]] * w2);
+  out.resize(attribute.empty() ? 0 : origins.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::uint32_t* corner = &mesh.indices[3 * std::size_t{origins[i].triangle}];
+    const float w1 = origins[i].weights.x, w2 = origins[i].weights.y;
+    out[i] = attribute[corner[0]] * (1.0f - w1 - w2) + attribute[corner[1]] * w1 + attribute[corner[2]] * w2;
   }
 }
 
@@ -294,6 +291,16 @@ void FrameDrawer::State::refine(const Pose& pose, const CameraView& camera, cons
   }
   if (smooth) silhouette::refineAll(tasks, parameters, workers);
 
+  // What the stream's vertices interpolate, instances side by side.
+  workers.forBlocks(instances.size(), 1, [&](std::size_t i, std::size_t, int) {
+    InstanceResources& resources = instances[i];
+    if (!resources.visible) return;
+    const Mesh& mesh = scene.meshes[resources.mesh];
+    const std::vector<silhouette::Origin>& origins = resources.stream.origins;
+    interpolate<glm::vec2>(mesh, origins, mesh.texcoords, resources.texcoords);
+    interpolate<glm::vec4>(mesh, origins, mesh.colors, resources.colors);
+    interpolate<glm::vec4>(mesh, origins, resources.shapeTangents, resources.streamTangents);
+  });
   draws.clear();
   std::uint32_t firstId = 0;
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
@@ -305,10 +312,6 @@ void FrameDrawer::State::refine(const Pose& pose, const CameraView& camera, cons
       resources.stream = {};
       continue;
     }
-    const std::vector<silhouette::Origin>& origins = resources.stream.origins;
-    interpolate<glm::vec2>(mesh, origins, mesh.texcoords, resources.texcoords);
-    interpolate<glm::vec4>(mesh, origins, mesh.colors, resources.colors);
-    interpolate<glm::vec4>(mesh, origins, resources.shapeTangents, resources.streamTangents);
     raster::Draw& draw = draws.emplace_back(describe(pose.instances[i], resources));
     draw.modelToView = tasks[resources.task].view.modelToView;
     draw.firstId = id;
