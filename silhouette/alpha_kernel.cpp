@@ -41,17 +41,52 @@ V crossing(V low, V high, V least, V most, V beta) {
   return hn::IfThenElse(hn::And(hn::Le(low, zero), hn::Ge(high, zero)), one, alpha);
 }
 
+// Facings by their numbers: from registers where 64 of them fill four, which takes half the time of gathering.
+class Lookup {
+ public:
+  explicit Lookup(const EdgeBlock& edges) : facings_(edges.facings), fits_(edges.facingCount <= 64) {
+    const Tag tag;
+    if constexpr (kInRegisters)
+      for (std::size_t k = 0; k < 4; ++k) {
+        const std::size_t at = 16 * k < edges.facingCount ? 16 * k : 0;
+        table_[k] = hn::LoadU(tag, facings_ + at);
+      }
+  }
+
+  V operator()(const std::uint16_t* corners) const {
+    const Tag tag;
+    const hn::Rebind<std::int32_t, Tag> indexTag;
+    const auto index = hn::PromoteTo(indexTag, hn::LoadU(hn::Rebind<std::uint16_t, Tag>(), corners));
+    if constexpr (kInRegisters) {
+      if (fits_) {
+        const auto at = hn::IndicesFromVec(tag, hn::And(index, hn::Set(indexTag, 15)));
+        const auto odd = hn::RebindMask(tag, hn::TestBit(index, hn::Set(indexTag, 16)));
+        const auto upper = hn::RebindMask(tag, hn::TestBit(index, hn::Set(indexTag, 32)));
+        const V low =
+            hn::IfThenElse(odd, hn::TableLookupLanes(table_[1], at), hn::TableLookupLanes(table_[0], at));
+        const V high =
+            hn::IfThenElse(odd, hn::TableLookupLanes(table_[3], at), hn::TableLookupLanes(table_[2], at));
+        return hn::IfThenElse(upper, high, low);
+      }
+    }
+    return hn::GatherIndex(tag, facings_, index);
+  }
+
+ private:
+  static constexpr bool kInRegisters = hn::MaxLanes(Tag()) == 16;
+
+  const float* facings_;
+  bool fits_;
+  V table_[4] = {hn::Zero(Tag()), hn::Zero(Tag()), hn::Zero(Tag()), hn::Zero(Tag())};
+};
+
 std::uint64_t alphas(const EdgeBlock& edges, bool isCrossing, float threshold, float* out) {
   const Tag tag;
-  const hn::Rebind<std::int32_t, Tag> indexTag;
-  const hn::Rebind<std::uint16_t, Tag> cornerTag;
   const std::size_t lanes = hn::Lanes(tag);
+  const Lookup lookup(edges);
   std::uint64_t bends = 0;
   for (std::size_t i = 0; i < kEdgesPerCluster; i += lanes) {
-    const auto facing = [&](std::size_t k) {
-      const auto corner = hn::LoadU(cornerTag, edges.corners + k * kEdgesPerCluster + i);
-      return hn::GatherIndex(tag, edges.facings, hn::PromoteTo(indexTag, corner));
-    };
+    const auto facing = [&](std::size_t k) { return lookup(edges.corners + k * kEdgesPerCluster + i); };
     const V g0 = facing(0), g1 = facing(1), g3 = facing(3), g4 = facing(4), s = facing(2), t = facing(5);
     const V low = hn::Min(hn::Min(g0, g1), hn::Min(g3, g4)), high = hn::Max(hn::Max(g0, g1), hn::Max(g3, g4));
     const V least = hn::Min(s, t), most = hn::Max(s, t), beta = hn::LoadU(tag, edges.betas + i);

@@ -14,6 +14,7 @@ struct EdgeBlock {
   /// face, 3, 4 and 5 likewise in the second.
   const std::uint16_t* corners;
   const float* facings;
+  std::size_t facingCount;  ///< of facings; room for whole vectors of 16
   const float* betas;
   const float* bulges;  ///< what the edge may rise at α = 1
 };

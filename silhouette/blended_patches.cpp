@@ -44,6 +44,7 @@ constexpr float kThird = 1.0f / 3.0f;
 // An edge that bends in this view.
 struct SmoothEdge {
   std::uint32_t edge = 0;
+  std::array<std::uint32_t, 2> ends{};  // vertices, of the first face
   float alpha = 0;
   CurveOffsets offsets{};  // α d
   std::uint32_t segments = 1;
@@ -110,10 +111,10 @@ struct Pass {
   void measureEdges();
   void describe(std::size_t cluster, std::uint32_t record, CurveBatch& batch);
   void setSegments(const CurveBatch& batch, std::uint32_t record);
-  void placeEdges();
   void listCandidates();
   Share decide(std::size_t word);
-  void placeTriangles();
+  void place();
+  void emit();
   void emitEdge(const SmoothEdge& smooth);
   void emitTriangle(std::uint32_t triangle, const Pattern& pattern, std::uint32_t& vertex,
                     std::uint32_t& face);
@@ -138,9 +139,9 @@ void Pass::run() {
   report.classifyMs =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   measureEdges();
-  placeEdges();
   listCandidates();
-  placeTriangles();
+  place();
+  emit();
   for (const SmoothEdge& smooth : scratch.smooth) scratch.recordOf[smooth.edge] = kNone;
 }
 
@@ -196,8 +197,8 @@ void Pass::describe(std::size_t cluster, std::uint32_t record, CurveBatch& batch
     smooth.seam = (clusters.seams(cluster) >> i & 1) != 0;
     const CurveOffsets& d = curves[smooth.edge];
     smooth.offsets = {smooth.alpha * d[0], smooth.alpha * d[1]};
-    const std::array<std::uint32_t, 2>& ends = clusters.endsAt(place);
-    batch.add(mesh.positions[ends[0]], mesh.positions[ends[1]], smooth.offsets);
+    smooth.ends = clusters.endsAt(place);
+    batch.add(mesh.positions[smooth.ends[0]], mesh.positions[smooth.ends[1]], smooth.offsets);
     scratch.recordOf[smooth.edge] = record;
     for (const Side& face : topology.edges()[smooth.edge].faces) {
       if (face.triangle == kNone) continue;
@@ -222,21 +223,6 @@ void Pass::setSegments(const CurveBatch& batch, std::uint32_t record) {
   }
   if (cappedEdges > 0)
     std::atomic_ref<std::size_t>(report.cappedEdges).fetch_add(cappedEdges, std::memory_order_relaxed);
-}
-
-// Gives every edge its place in the stream and writes its vertices.
-void Pass::placeEdges() {
-  std::uint32_t vertices = 0;
-  for (SmoothEdge& smooth : scratch.smooth) {
-    smooth.firstVertex = vertices;
-    vertices += smooth.vertexCount();
-  }
-  stream.positions.resize(vertices);
-  stream.normals.resize(vertices);
-  stream.origins.resize(vertices);
-  crew.forBlocks(scratch.smooth.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) emitEdge(scratch.smooth[k]);
-  });
 }
 
 Patch Pass::patchOf(std::size_t triangle, const Records& records) const {
@@ -344,9 +330,14 @@ Share Pass::decide(std::size_t word) {
   return share;
 }
 
-void Pass::placeTriangles() {
+// Gives every edge and every block of triangles its place in the stream.
+void Pass::place() {
   const std::size_t words = stream.replaced.size(), blocks = (words + kWordsPerBlock - 1) / kWordsPerBlock;
   scratch.shares.assign(blocks + 1, {});
+  for (SmoothEdge& smooth : scratch.smooth) {
+    smooth.firstVertex = scratch.shares[0].vertices;
+    scratch.shares[0].vertices += smooth.vertexCount();
+  }
   crew.forBlocks(words, kWordsPerBlock, [&](std::size_t begin, std::size_t end) {
     Share& sum = scratch.shares[begin / kWordsPerBlock + 1];
     for (std::size_t word = begin; word < end; ++word) {
@@ -354,8 +345,6 @@ void Pass::placeTriangles() {
       sum = {sum.curved + share.curved, sum.vertices + share.vertices, sum.triangles + share.triangles};
     }
   });
-  const auto edgeVertexCount = static_cast<std::uint32_t>(stream.positions.size());
-  scratch.shares[0].vertices = edgeVertexCount;
   for (std::size_t block = 1; block <= blocks; ++block) {
     const Share &before = scratch.shares[block - 1], &own = scratch.shares[block];
     scratch.shares[block] = {before.curved + own.curved, before.vertices + own.vertices,
@@ -363,12 +352,14 @@ void Pass::placeTriangles() {
   }
   const Share all = scratch.shares[blocks];
   report.curvedTriangles = all.curved;
-  stream.positions.resize(all.vertices);
-  stream.normals.resize(all.vertices);
-  stream.origins.resize(all.vertices);
-  stream.indices.resize(3 * std::size_t{all.triangles});
-  stream.sourceTriangles.resize(all.triangles);
-  crew.forBlocks(words, kWordsPerBlock, [&](std::size_t begin, std::size_t end) {
+  stream.setCounts(all.vertices, all.triangles);
+}
+
+void Pass::emit() {
+  crew.forBlocks(scratch.smooth.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) emitEdge(scratch.smooth[k]);
+  });
+  crew.forBlocks(stream.replaced.size(), kWordsPerBlock, [&](std::size_t begin, std::size_t end) {
     const Share& before = scratch.shares[begin / kWordsPerBlock];
     std::uint32_t vertex = before.vertices, face = before.triangles;
     for (std::size_t word = begin; word < end; ++word) {
@@ -384,8 +375,7 @@ void Pass::placeTriangles() {
 
 void Pass::emitEdge(const SmoothEdge& smooth) {
   const Edge& edge = topology.edges()[smooth.edge];
-  const std::array<std::uint32_t, 2> ends = edgeVertices(mesh, edge)[0];
-  const vec3 &p = mesh.positions[ends[0]], &q = mesh.positions[ends[1]];
+  const vec3 &p = mesh.positions[smooth.ends[0]], &q = mesh.positions[smooth.ends[1]];
   for (std::uint32_t k = 1; k < smooth.segments; ++k) {
     const float t = static_cast<float>(k) / static_cast<float>(smooth.segments);
     const vec3 position = curvePoint(p, q, smooth.offsets, t);

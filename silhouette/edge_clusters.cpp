@@ -16,8 +16,9 @@ using glm::dot;
 using glm::vec3;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kRounding = 1.001f;   // covers the roundings of bounds
-constexpr float kConeMargin = 1e-3f;  // in cosines
+constexpr float kRounding = 1.001f;           // covers the roundings of bounds
+constexpr float kConeMargin = 1e-3f;          // in cosines
+constexpr std::uint32_t kLongestVector = 16;  // floats
 
 std::uint32_t spread(std::uint32_t x) {  // ten bits, two zeros between
   x = (x | x << 16) & 0x030000ff;
@@ -92,6 +93,8 @@ void EdgeClusters::build(const Mesh& mesh, const Topology& topology) {
     cluster.firstVertex = static_cast<std::uint32_t>(vertices_.size());
     cluster.vertexCount = static_cast<std::uint32_t>(own.size());
     vertices_.insert(vertices_.end(), own.begin(), own.end());
+    cluster.paddedCount = (cluster.vertexCount + kLongestVector - 1) / kLongestVector * kLongestVector;
+    vertices_.resize(cluster.firstVertex + cluster.paddedCount, own.back());
   }
 }
 
@@ -140,11 +143,11 @@ void EdgeClusters::measureEdges(std::size_t c, const Topology& topology, const E
 void EdgeClusters::boundCluster(std::size_t c, const Mesh& mesh, const EdgeTest& test) {
   Cluster& cluster = clusters_[c];
   vec3 low(kInfinity), high(-kInfinity), sum(0.0f);
-  for (std::size_t i = cluster.firstVertex; i < cluster.firstVertex + cluster.vertexCount; ++i) {
+  for (std::size_t i = cluster.firstVertex; i < cluster.firstVertex + cluster.paddedCount; ++i) {
     const vec3 &p = mesh.positions[vertices_[i]], &n = mesh.normals[vertices_[i]];
     low = glm::min(low, p);
     high = glm::max(high, p);
-    sum += n;
+    if (i < cluster.firstVertex + cluster.vertexCount) sum += n;
     x_[i] = p.x;
     y_[i] = p.y;
     z_[i] = p.z;
@@ -252,9 +255,10 @@ std::uint64_t EdgeClusters::classify(std::size_t c, const Eye& eye, const EdgeTe
     std::array<float, 6 * kEdgesPerCluster> facings;  // at most six vertices per edge
     computeFacings(eye.perspective ? eye.view.eye : -eye.view.direction, eye.perspective,
                    {&x_[first], &y_[first], &z_[first], &nx_[first], &ny_[first], &nz_[first]},
-                   cluster.vertexCount, facings.data());
-    bends = computeAlphas({&corners_[6 * begin], facings.data(), &betas_[begin], &bulges_[begin]},
-                          eye.silhouetteness == Silhouetteness::kCrossing, threshold, alphas.data());
+                   cluster.paddedCount, facings.data());
+    bends = computeAlphas(
+        {&corners_[6 * begin], facings.data(), cluster.vertexCount, &betas_[begin], &bulges_[begin]},
+        eye.silhouetteness == Silhouetteness::kCrossing, threshold, alphas.data());
   }
   for (std::uint64_t rest = cluster.always; rest != 0; rest &= rest - 1) {
     const auto i = static_cast<std::size_t>(std::countr_zero(rest));

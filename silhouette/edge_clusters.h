@@ -72,7 +72,8 @@ class EdgeClusters {
     float bulge = 0;              // of its edges, the largest
     std::uint64_t always = 0;     // edges that are smooth from every viewpoint
     std::uint64_t seams = 0;
-    std::uint32_t firstVertex = 0, vertexCount = 0;
+    // Of vertices_: the last is repeated up to whole vectors.
+    std::uint32_t firstVertex = 0, vertexCount = 0, paddedCount = 0;
   };
 
   void measureEdges(std::size_t c, const Topology& topology, const EdgeTest& test,

@@ -8,7 +8,9 @@ class Flat final : public MethodState {
  public:
   void deform(const Mesh&) override {}
   void prepare(const Parameters&, const Crew&) override {}
-  void refine(const View&, const Parameters&, const Crew&, RefinedStream&, RefineReport&) override {}
+  void refine(const View&, const Parameters&, const Crew&, RefinedStream& stream, RefineReport&) override {
+    stream.setCounts(0, 0);
+  }
 };
 
 }  // namespace

@@ -57,8 +57,8 @@ class MethodState {
   virtual void deform(const Mesh& mesh) = 0;
   /// Computes what does not depend on the view, where it is not there already.
   virtual void prepare(const Parameters& parameters, const Crew& crew) = 0;
-  /// Fills a cleared stream and the counts of the report. May run for several views at a time, each with a
-  /// slot of its own.
+  /// Fills a restarted stream, whose counts it sets, and the counts of the report. May run for several views at a
+  /// time, each with a slot of its own.
   virtual void refine(const View& view, const Parameters& parameters, const Crew& crew, RefinedStream& stream,
                       RefineReport& report) = 0;
   /// Between frames: gives the scratch memory of all slots the size of the largest.

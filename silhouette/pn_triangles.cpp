@@ -107,15 +107,11 @@ void PnTriangles::refine(const View& view, const Parameters& parameters, const C
   const auto L = parameters.segments > 0 ? static_cast<std::uint32_t>(parameters.segments)
                                          : segmentsFromTolerance(view, parameters.tolerance, crew, report);
   report.smoothEdges = topology_.edges().size();
-  if (L == 1) return;
+  if (L == 1) return stream.setCounts(0, 0);
   const std::size_t triangles = placeOfTriangle_.back();
   const std::size_t vertices = std::size_t{placeOfEdge_.back()} * onSide(L) + triangles * inTriangle(L);
   report.curvedTriangles = triangles;
-  stream.positions.resize(vertices);
-  stream.normals.resize(vertices);
-  stream.origins.resize(vertices);
-  stream.indices.resize(3 * triangles * L * L);
-  stream.sourceTriangles.resize(triangles * L * L);
+  stream.setCounts(vertices, triangles * L * L);
   StreamWriter writer(mesh_, parameters.shadingNormals, stream);
   crew.forBlocks(curves_.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) emitEdge(e, L, writer);

@@ -58,7 +58,7 @@ struct Refiner::State {
               RefineReport& report) {
     const auto start = std::chrono::steady_clock::now();
     report = {};
-    stream.clear(source.mesh.triangleCount());
+    stream.restart(source.mesh.triangleCount());
     methods[static_cast<std::size_t>(parameters.method)]->refine(view, parameters, crew, stream, report);
     report.refinedTriangles = stream.triangleCount();
     report.refineMs = millisecondsSince(start) - report.classifyMs;

@@ -92,6 +92,11 @@ struct RefinedStream {
   bool isReplaced(std::size_t triangle) const {
     return (replaced[triangle / 64] >> (triangle % 64) & 1) != 0;
   }
+  /// Nothing is replaced, and no contour listed. New vertices and triangles stay until setCounts().
+  void restart(std::size_t meshTriangles);
+  /// Room for so many new vertices and triangles, which are then to be written: some hold what was there before.
+  void setCounts(std::size_t vertices, std::size_t triangles);
+  /// Empty, for a mesh of so many triangles.
   void clear(std::size_t meshTriangles);
 
   /// Indices in range, order ascending, replaced bits match the source triangles, all numbers finite.

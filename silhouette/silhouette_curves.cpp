@@ -132,6 +132,7 @@ struct Pass {
 
 void Pass::run() {
   const auto start = std::chrono::steady_clock::now();
+  stream.setCounts(0, 0);
   scratch.search.run(mesh, topology, prepared, view, parameters, crew);
   findEdges();
   report.classifyMs =
@@ -299,9 +300,7 @@ void Pass::lower(std::uint32_t point, const vec3& displacement) {
     const auto at = static_cast<std::uint32_t>(scratch.lowered.size());
     scratch.loweredOf[vertex] = at;
     scratch.lowered.push_back(vertex);
-    stream.positions.emplace_back();
-    stream.normals.emplace_back();
-    stream.origins.emplace_back();
+    stream.setCounts(at + 1, 0);
     const Origin origin{side / 3, {side % 3 == 1 ? 1.0f : 0.0f, side % 3 == 2 ? 1.0f : 0.0f}};
     writer.vertex(at, mesh.positions[vertex] + displacement, origin, kLinear);
   }
@@ -323,9 +322,7 @@ void Pass::placeEdges() {
     edge.firstVertex = vertices;
     vertices += edge.vertexCount();
   }
-  stream.positions.resize(vertices);
-  stream.normals.resize(vertices);
-  stream.origins.resize(vertices);
+  stream.setCounts(vertices, 0);
   crew.forBlocks(scratch.edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) emitEdge(scratch.edges[k]);
   });
@@ -360,11 +357,7 @@ void Pass::placePieces() {
     scratch.slots[k].triangle += scratch.slots[k - 1].triangle;
   }
   const Slot all = scratch.slots.back();
-  stream.positions.resize(all.vertex);
-  stream.normals.resize(all.vertex);
-  stream.origins.resize(all.vertex);
-  stream.indices.resize(3 * std::size_t{all.triangle});
-  stream.sourceTriangles.resize(all.triangle);
+  stream.setCounts(all.vertex, all.triangle);
   report.curvedTriangles = triangles.size();
   crew.forBlocks(triangles.size(), kTrianglesPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) emitPieces(k);

@@ -17,14 +17,23 @@ bool isOrigin(const Origin& origin, std::size_t triangles) {
 
 }  // namespace
 
-void RefinedStream::clear(std::size_t meshTriangles) {
-  positions.clear();
-  normals.clear();
-  origins.clear();
-  indices.clear();
-  sourceTriangles.clear();
+void RefinedStream::restart(std::size_t meshTriangles) {
   contour.clear();
   replaced.assign((meshTriangles + 63) / 64, 0);
+}
+
+// Arrays are not emptied before: only what they grow by is filled with zeros.
+void RefinedStream::setCounts(std::size_t vertices, std::size_t triangles) {
+  positions.resize(vertices);
+  normals.resize(vertices);
+  origins.resize(vertices);
+  indices.resize(3 * triangles);
+  sourceTriangles.resize(triangles);
+}
+
+void RefinedStream::clear(std::size_t meshTriangles) {
+  restart(meshTriangles);
+  setCounts(0, 0);
 }
 
 bool RefinedStream::isConsistent(const Mesh& mesh) const {
