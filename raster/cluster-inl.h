@@ -132,14 +132,16 @@ struct TriangleVector {
 HWY_NOINLINE MI settleTies(const Tile& tile, const Record& record, const std::uint32_t* ids, MI wins,
                            MI ties) {
   const I d;
-  alignas(64) std::int32_t lanes[kLanes];
-  hn::Store(hn::VecFromMask(d, ties), d, lanes);
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    if (lanes[i] == 0) continue;
-    const bool first = ids[i] == kNoRecord || tile.orderOf(record) < tile.orderOf(tile.records[ids[i]]);
-    lanes[i] = first ? 0 : -1;
+  const VI shown = hn::LoadU(d, reinterpret_cast<const std::int32_t*>(ids));
+  const std::uint64_t order = tile.orderOf(record);
+  while (!hn::AllFalse(d, ties)) {  // for each triangle that is tied with
+    const std::uint32_t id = ids[static_cast<std::size_t>(hn::FindFirstTrue(d, ties))];
+    const MI same = hn::And(ties, hn::Eq(shown, hn::Set(d, static_cast<std::int32_t>(id))));
+    ties = hn::AndNot(same, ties);
+    const bool first = id == kNoRecord || order < tile.orderOf(tile.records[id]);
+    if (!first) wins = hn::AndNot(same, wins);
   }
-  return hn::AndNot(hn::Ne(hn::Load(d, lanes), hn::Zero(d)), wins);
+  return wins;
 }
 #endif
 

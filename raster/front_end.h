@@ -64,7 +64,12 @@ class FrontEnd {
            const Tiling& tiling, const Kernels& kernels, Workers& workers);
 
   const VisibleCluster& cluster(std::uint32_t item) const { return visible_[item]; }
+  /// The clusters of a range that may be seen.
+  std::span<const VisibleCluster> visibleOf(std::size_t range) const {
+    return std::span(visible_).subspan(ranges_[range].begin, ranges_[range].visible);
+  }
   const LooseTriangle& loose(std::uint32_t item) const { return loose_[item]; }
+  std::size_t looseCount() const { return ranges_.back().firstLoose + ranges_.back().loose.size(); }
   const Bins& clusterBins() const { return clusterBins_; }
   const Bins& looseBins() const { return looseBins_; }
   const Bins& blendedBins() const { return blendedBins_; }  ///< loose triangles, far to near

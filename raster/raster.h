@@ -18,8 +18,10 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <limits>
 #include <memory>
 #include <span>
+#include <stdexcept>
 
 #include "raster/base/projection.h"
 #include "raster/material.h"
@@ -110,6 +112,21 @@ struct Frame {
   Encoding encoding = Encoding::kSrgb;
   glm::vec4 background{0.0f};  ///< linear RGB and straight alpha
   int samples = 4;             ///< per pixel: 1, 4 or 8
+  /// Above this the frame is refused instead of drawn: nanoseconds that one thread would take, roughly. For scenes of
+  /// strangers; the estimate is the same everywhere.
+  double effortLimit = std::numeric_limits<double>::infinity();
+};
+
+/// Thrown by Renderer::draw() for a frame beyond its effortLimit, before anything is written.
+class TooMuchEffort : public std::runtime_error {
+ public:
+  TooMuchEffort(double nanoseconds, std::uint32_t mostInDraw)
+      : std::runtime_error("the frame takes more than its effortLimit"),
+        effort(nanoseconds),
+        heaviestDraw(mostInDraw) {}
+
+  double effort;               ///< in the units of Frame::effortLimit
+  std::uint32_t heaviestDraw;  ///< the index of the draw that takes the most
 };
 
 /// Where the picture goes. Strides are in elements from row to row. Optional planes have a null pointer.
@@ -158,7 +175,7 @@ class Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   /// Draws the frame over every pixel of the target. Throws std::invalid_argument for a frame that breaks the
-  /// rules above (checked before anything is written).
+  /// rules above, and TooMuchEffort for one beyond its effortLimit (checked before anything is written).
   void draw(const Frame& frame, const Target& target, Statistics* statistics = nullptr);
 
  private:

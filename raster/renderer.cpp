@@ -7,6 +7,7 @@
 #include "raster/base/check.h"
 #include "raster/base/workers.h"
 #include "raster/batch.h"
+#include "raster/effort.h"
 #include "raster/front_end.h"
 #include "raster/kernels.h"
 #include "raster/tile.h"
@@ -136,6 +137,7 @@ void Renderer::draw(const Frame& frame, const Target& target, Statistics* statis
   clock.lap(transformMs);
   const Kernels kernels = s.tuning.scalar ? scalarKernels() : vectorKernels();
   s.front.run(frame, batches, s.batches.clusterCount(), map, tiling, kernels, s.workers);
+  requireEffortWithinLimit(frame, batches, s.front, map, tiling, kernels, s.workers);
   s.lines.run(frame, map, tiling, s.workers);
   clock.lap(binningMs);
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/scene/lights.h"
+#include "apps/scene/load.h"
 #include "raster/base/check.h"
 #include "raster/base/workers.h"
 #include "silhouette/topology.h"
@@ -148,6 +149,7 @@ struct FrameDrawer::State {
   raster::Draw describe(const Instance& instance, const InstanceResources& resources) const;
   RefinedInstance refined(const InstanceResources& resources) const;
   void addOverlays(const OverlaySet& wanted);
+  [[noreturn]] void refuse(const raster::TooMuchEffort& error, double limit) const;
 };
 
 /// Finds where the instance's shape is and how the camera sees it.
@@ -238,7 +240,28 @@ void FrameDrawer::State::addOverlays(const OverlaySet& wanted) {
   }
 }
 
+void FrameDrawer::State::refuse(const raster::TooMuchEffort& error, double limit) const {
+  const auto seconds = [](double nanoseconds) { return std::to_string(std::llround(nanoseconds * 1e-9)); };
+  std::size_t mesh = 0;  // of the draw: those are the visible instances in their order
+  std::uint32_t left = error.heaviestDraw;
+  for (const InstanceResources& resources : instances) {
+    if (!resources.visible) continue;
+    mesh = resources.mesh;
+    if (left-- == 0) break;
+  }
+  throw InputError(scene.name + ": /meshes/" + std::to_string(mesh) +
+                   ": to draw it in so many layers takes about " + seconds(error.effort) +
+                   " seconds of a processor per frame, where a file of this size may take " + seconds(limit) +
+                   "; lower the number of triangles or lights in one place, or --zoom");
+}
+
 namespace {
+
+/// Smaller frames may take as much as one of 1280x800.
+double effortLimitOf(const Scene& scene, const Projection& projection) {
+  constexpr double kPixels = 1280.0 * 800.0;
+  return scene.effortLimit * std::max(1.0, double(projection.width) * double(projection.height) / kPixels);
+}
 
 /// Where the picture and the planes that are wanted go, sized for it.
 raster::Target targetOf(Image& image, Planes* planes) {
@@ -344,9 +367,14 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
   frame.encoding = settings.encoding;
   frame.background = settings.background;
   frame.samples = settings.samples;
+  frame.effortLimit = effortLimitOf(s.scene, camera.projection);
   const raster::Target target = targetOf(image, planes);
   const Clock::time_point rasterStart = Clock::now();
-  s.renderer.draw(frame, target, statistics ? &statistics->raster : nullptr);
+  try {
+    s.renderer.draw(frame, target, statistics ? &statistics->raster : nullptr);
+  } catch (const raster::TooMuchEffort& error) {
+    s.refuse(error, frame.effortLimit);
+  }
 
   if (!statistics) return;
   statistics->refine = {};

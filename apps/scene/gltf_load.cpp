@@ -19,6 +19,8 @@ namespace {
 constexpr std::size_t kBytesPerTriangle = 640;
 /// As many triangles are drawn for free per byte of the model beyond the first 64 KiB: a forest is many copies of a tree.
 constexpr std::size_t kFreeTrianglesPerByte = 20, kSmallFile = 64U << 10;
+/// Nanoseconds of one thread that a frame may take per byte of the model: a file of 64 KiB, eight seconds.
+constexpr double kEffortPerByte = 122e3;
 
 /// Counts the triangles that the scene draws and charges what they take to draw: a small file may place a mesh many times.
 std::size_t chargeInstances(GltfDocument& document, const Scene& scene) {
@@ -75,6 +77,7 @@ Scene loadGltf(const std::string& file, std::vector<std::uint8_t> bytes,
   readMaterials(document, scene);
   const std::size_t triangles = chargeInstances(document, scene);
   checkWorldTransforms(document, scene, nodeOf);
+  scene.effortLimit = kEffortPerByte * static_cast<double>(std::max(document.inputBytes(), kSmallFile));
   scene.notices = std::move(document.notices);
   if (triangles == 0) scene.notices.emplace_back("The file holds no triangles to draw.");
   return scene;

@@ -1,6 +1,7 @@
 // Small files that ask for much: whatever 64 KiB hold, limn takes at most 256 MiB and five seconds to draw or refuse it.
 #include <gtest/gtest.h>
 
+#include "apps/scene/image.h"
 #include "tests/program/run_program.h"
 #include "tests/scene/gltf_writer.h"
 
@@ -95,6 +96,58 @@ TEST_F(Hostile, CountsWithoutBytes) {
     writer.addMesh({{"POSITION", zeros(writer, count)}});
     expect("zeros" + std::to_string(count), writer, count == 300'000 ? nullptr : "/meshes/0");
   }
+}
+
+/// `count` triangles over the whole picture, in 84 layers.
+void addLayers(GltfWriter& writer, std::size_t count) {
+  constexpr std::size_t kLayers = 84;
+  std::vector<float> positions;
+  for (std::size_t i = 0; i < kLayers; ++i)
+    for (const auto& [x, y] : {std::pair(-1.7f, -1.0f), std::pair(1.7f, -1.0f), std::pair(0.0f, 2.0f)})
+      positions.insert(positions.end(), {x, y, 0.0002f * static_cast<float>(i)});
+  std::vector<std::uint8_t> indices;
+  for (std::size_t t = 0; t < count; ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      indices.push_back(static_cast<std::uint8_t>(t * kLayers / count * 3 + k));
+  writer.addMesh({{"POSITION", writer.addArray(positions, "VEC3")}},
+                 writer.addArray(indices, "SCALAR"))["material"] = 0;
+}
+
+TEST_F(Hostile, LayersOverLayers) {
+  for (const std::string mode : {"OPAQUE", "MASK", "BLEND"}) {
+    GltfWriter writer;
+    addLayers(writer, 19000);
+    const json color = {{"baseColorFactor", {1, 0.5, 0.2, 0.6}}};
+    writer.root["materials"] = {
+        {{"alphaMode", mode}, {"doubleSided", true}, {"pbrMetallicRoughness", color}}};
+    expect(mode, writer, "/meshes/0: to draw it in so many layers");
+  }
+}
+
+TEST_F(Hostile, LightsOverLights) {
+  GltfWriter writer;
+  addLayers(writer, 50);
+  writer.root["materials"] = {{{"alphaMode", "BLEND"}, {"doubleSided", true}}};
+  writer.root["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  const json light = {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}};
+  for (int i = 0; i < 900; ++i) writer.root["nodes"].push_back(light);
+  expect("lights", writer, "/meshes/0: to draw it in so many layers");
+}
+
+TEST_F(Hostile, PicturesOverPictures) {
+  GltfWriter writer;
+  json primitive = writer.addTriangle();
+  const limn::scene::Image black{4096, 2048, std::vector<std::uint8_t>(std::size_t{4} * 4096 * 2048)};
+  const json image = {{"bufferView", writer.addView(limn::scene::encodePng(black, {}, 9))},
+                      {"mimeType", "image/png"}};
+  for (int i = 0; i < 100; ++i) {
+    writer.root["images"].push_back(image);
+    writer.root["textures"].push_back({{"source", i}});
+    writer.root["materials"].push_back({{"normalTexture", {{"index", i}}}});
+    primitive["material"] = i;
+    writer.root["meshes"][0]["primitives"][i] = primitive;
+  }
+  expect("pictures", writer, "/images/");
 }
 
 TEST_F(Hostile, JsonWithoutEnd) {
