@@ -89,6 +89,8 @@ int GlbBuilder::addTriangles(std::span<const std::uint32_t> indices, std::size_t
 
 std::vector<std::uint8_t> GlbBuilder::finish() {
   while (binary_.size() % 4 != 0) binary_.push_back(0);
+  for (const char* list : {"accessors", "bufferViews"})
+    if (root.contains(list) && root[list].empty()) root.erase(list);  // glTF knows no empty lists
   if (!binary_.empty()) root["buffers"] = {{{"byteLength", binary_.size()}}};
   std::string json = root.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   while (json.size() % 4 != 0) json += ' ';

@@ -46,7 +46,13 @@ GltfRewriter::GltfRewriter(const ModelFile& file) : document_(file.name, file.by
   for (const char* name : {"accessors", "bufferViews", "buffers"}) json.erase(name);
   newAccessor_.assign(oldAccessors_.size(), -1);
   newView_.assign(oldViews_.size(), -1);
-  builder_.root = std::move(json);
+  setRoot(std::move(json));
+}
+
+/// With lists for what is brought over, whose members would move if the lists came later: others hold references to them.
+void GltfRewriter::setRoot(Json json) {
+  for (const char* name : {"accessors", "bufferViews"}) json[name] = Json::array();
+  root() = std::move(json);
 }
 
 void GltfRewriter::keepRest() {
@@ -68,7 +74,7 @@ void GltfRewriter::keepMaterialsOnly() {
     const Json named = namedIn(text, listOf(root(), name));
     if (!named.empty()) kept[name] = named;
   }
-  root() = std::move(kept);
+  setRoot(std::move(kept));
   keepImages();
 }
 

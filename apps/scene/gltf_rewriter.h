@@ -30,6 +30,7 @@ class GltfRewriter {
   void keepMesh(std::size_t index);
 
  private:
+  void setRoot(Json json);
   void keepAccessor(Json& json, const char* name);
   void keepView(Json& json, const char* name);
   void keepImages();

@@ -141,21 +141,25 @@ TEST_F(Refine, KeepsTexturesAndMaterials) {
   const scene::Image four{2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 90, 90, 255, 255, 255, 255, 0, 255}};
   const auto png = scene::encodePng(four, {}, 1);
   write("four.png", std::string(png.begin(), png.end()));
-  const auto glb = textured().glb();
-  write("fold.glb", std::string(glb.begin(), glb.end()));
+  scene::test::GltfWriter embedded = textured();
+  embedded.root["images"] = {{{"bufferView", embedded.addView(png)}, {"mimeType", "image/png"}}};
   const Words view = {"--eye", "1,2,4", "--target", "0,0,0", "--size", "120x120", "--method", "flat"};
-  ASSERT_EQ(limn(Words{"refine", "fold.glb", "-o", "deep/r.glb"} + view).status, 0);
-  const json document = Glb(contents("deep/r.glb")).document;
-  EXPECT_EQ(document["materials"], textured().root["materials"]);
-  EXPECT_EQ(document["extensionsUsed"], json::array({"KHR_texture_transform"}));
-  EXPECT_EQ(document["images"][0]["mimeType"], "image/png");
-  // Flat triangles lose nothing on the way, so the pictures are the same to the last bit.
-  ASSERT_EQ(limn(Words{"render", "fold.glb", "-o", "a.png"} + view).status, 0);
-  ASSERT_EQ(limn(Words{"render", "deep/r.glb", "-o", "b.png"} + view).status, 0);
-  const Result compared = limn({"compare", "a.png", "b.png"});
-  EXPECT_EQ(compared.status, 0) << compared.out;
-  const scene::Image drawn = scene::readPng(path("a.png"));
-  EXPECT_TRUE(std::any_of(drawn.rgba.begin(), drawn.rgba.end(), [](std::uint8_t v) { return v > 0; }));
+  for (const scene::test::GltfWriter& fold : {textured(), embedded}) {
+    const auto glb = fold.glb();
+    write("fold.glb", std::string(glb.begin(), glb.end()));
+    ASSERT_EQ(limn(Words{"refine", "fold.glb", "-o", "deep/r.glb"} + view).status, 0);
+    const json document = Glb(contents("deep/r.glb")).document;
+    EXPECT_EQ(document["materials"], fold.root["materials"]);
+    EXPECT_EQ(document["extensionsUsed"], json::array({"KHR_texture_transform"}));
+    EXPECT_EQ(document["images"][0]["mimeType"], "image/png");
+    // Flat triangles lose nothing on the way, so the pictures are the same to the last bit.
+    ASSERT_EQ(limn(Words{"render", "fold.glb", "-o", "a.png"} + view).status, 0);
+    ASSERT_EQ(limn(Words{"render", "deep/r.glb", "-o", "b.png"} + view).status, 0);
+    const Result compared = limn({"compare", "a.png", "b.png"});
+    EXPECT_EQ(compared.status, 0) << compared.out;
+    const scene::Image drawn = scene::readPng(path("a.png"));
+    EXPECT_TRUE(std::any_of(drawn.rgba.begin(), drawn.rgba.end(), [](std::uint8_t v) { return v > 0; }));
+  }
 }
 
 TEST_F(Refine, RefusesWhatCannotBe) {
