@@ -26,8 +26,8 @@ using Bytes = std::span<const std::uint8_t>;
 // Texels of 16 bits in all levels; a picture that is in memory as a whole while it becomes a texture; and what the JPEG
 // decoder takes at most, its planes and the picture.
 constexpr std::size_t kTextureBytesPerPixel = 11, kPictureBytesPerPixel = 4, kJpegBytesPerPixel = 8;
-// Pictures of a single colour take no memory, but the time to find that out: a file of 64 KiB may hold 400 million pixels.
-constexpr std::size_t kPixelsPerChargedByte = 2;
+// Pictures of a single colour take no memory, but the time to find that out: a file of 64 KiB may hold 16384 x 16384 pixels.
+constexpr std::size_t kBytesPerTenPlainPixels = 7;
 constexpr std::size_t kLargestImageFile = std::size_t{1} << 28;
 
 bool isPng(Bytes bytes) {
@@ -121,7 +121,7 @@ class ImageReader {
     document_.checkRoom(width * height * more, place_);
     // Large pictures in small files have a single colour: one texel says it.
     if (const auto color = onlyColor(name, bytes)) {
-      document_.charge(width * height / kPixelsPerChargedByte, place_);
+      document_.charge(width * height * kBytesPerTenPlainPixels / 10, place_);
       return std::make_unique<raster::Texture>(1, 1, *color, content, sampler);
     }
     chargeTexture(width, height, more);
