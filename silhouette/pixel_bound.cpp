@@ -35,10 +35,4 @@ float PixelBound::chordError(const vec3& p, const vec3& q, const CurveOffsets& d
   return PixelMap::kChordFactor * std::sqrt(largest) / std::max(nearest, map_.nearPlane);
 }
 
-float PixelBound::distance(const vec3& p, const vec3& q) const {
-  const vec3 a = toView(p), b = toView(q);
-  if (!map_.perspective) return glm::length(vec2(a) - vec2(b));
-  return glm::length(vec2(a) / std::max(a.z, map_.nearPlane) - vec2(b) / std::max(b.z, map_.nearPlane));
-}
-
 }  // namespace limn::silhouette

@@ -51,8 +51,14 @@ class PixelBound {
   /// Upper bound of the distance in pixels between a cubic and its chord; n segments have 1/n² of it.
   float chordError(const glm::vec3& p, const glm::vec3& q, const CurveOffsets& d) const;
 
-  /// Distance in pixels between the projections of two points, depths clamped to the near plane.
-  float distance(const glm::vec3& p, const glm::vec3& q) const;
+  /// Where a point is seen: pixels to the right of the middle of the window and above it, the depth clamped to the near
+  /// plane.
+  glm::vec2 place(const glm::vec3& p) const {
+    const glm::vec3 seen = toView(p);
+    return map_.perspective ? glm::vec2(seen) / std::max(seen.z, map_.nearPlane) : glm::vec2(seen);
+  }
+  /// Distance in pixels between the places of two points.
+  float distance(const glm::vec3& p, const glm::vec3& q) const { return glm::length(place(p) - place(q)); }
 
   const PixelMap& map() const { return map_; }
 

@@ -1,26 +1,48 @@
 #include "silhouette/remesh.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <limits>
 
 #include "raster/base/check.h"
-#include "silhouette/contour.h"
 
 namespace limn::silhouette {
 namespace {
 
-using glm::dot;
-using glm::vec3;
+using glm::vec2;
+
+constexpr float kCoverCost = 4096.0f;  // of an ear's cover, in lengths of its diagonal
+
+// Where vertices are seen, in pixels.
+struct Seen {
+  const PixelBound& bound;
+  const Places& places;
+
+  vec2 operator[](std::uint32_t vertex) const { return bound.place(places[vertex]); }
+};
 
 // Lines of the plane of weights: bit k is side k's, and this one the segment's.
 constexpr unsigned kSegmentLine = 8;
 
-// A convex polygon in the plane of weights. Vertices on a common line share a bit.
+// Twice the area of a triangle.
+float turn(const vec2& a, const vec2& b, const vec2& c) {
+  const vec2 p = b - a, q = c - a;
+  return p.x * q.y - p.y * q.x;
+}
+
+float distanceFromLine(const vec2& p, const vec2& a, const vec2& b) {
+  const float length = glm::length(b - a);
+  return length > 0.0f ? std::abs(turn(a, b, p)) / length : glm::length(p - a);
+}
+
+// A polygon that is convex in the plane of weights, where vertices on a common line share a bit, but may be anything as the
+// viewer sees it.
 class Polygon {
  public:
-  void add(std::uint32_t vertex, unsigned lines, const Places& places) {
-    vertices_[size_] = {vertex, lines, places[vertex]};
+  void add(std::uint32_t vertex, unsigned lines, const Seen& seen) {
+    vertices_[size_] = {vertex, lines, seen[vertex]};
     ++size_;
   }
   void triangulate(Pieces& pieces);
@@ -29,9 +51,11 @@ class Polygon {
   struct Vertex {
     std::uint32_t index;
     unsigned lines;
-    vec3 place;
+    vec2 place;
   };
 
+  std::size_t before(std::size_t k) const { return k == 0 ? size_ - 1 : k - 1; }
+  std::size_t after(std::size_t k) const { return k + 1 == size_ ? 0 : k + 1; }
   unsigned linesWithout(std::size_t skipped) const {
     unsigned lines = ~0u;
     for (std::size_t k = 0; k < size_; ++k)
@@ -42,25 +66,59 @@ class Polygon {
     for (std::size_t k = 2; k < size_; ++k)
       pieces.add(vertices_[0].index, vertices_[k - 1].index, vertices_[k].index);
   }
-  std::size_t shortestEar() const;
+  bool encloses(const vec2& place) const;
+  float coverOf(std::size_t k) const;
+  std::size_t bestEar() const;
 
   std::array<Vertex, 3 + 3 * kMaxSideVertices + kMaxSegments> vertices_;
   std::size_t size_ = 0;
 };
 
-// The vertex whose cutting off makes the shortest diagonal, among those that are no points of a straight line
-// and do not leave one behind.
-std::size_t Polygon::shortestEar() const {
+// Whether the polygon goes around a place, either way: its winding number.
+bool Polygon::encloses(const vec2& place) const {
+  int winding = 0;
+  for (std::size_t k = 0; k < size_; ++k) {
+    const vec2 &p = vertices_[k].place, &q = vertices_[after(k)].place;
+    if ((p.y <= place.y) == (q.y <= place.y)) continue;
+    const bool rises = q.y > p.y;
+    if ((turn(p, q, place) > 0.0f) == rises) winding += rises ? 1 : -1;
+  }
+  return winding != 0;
+}
+
+// How far, in pixels, the ear reaches over what the viewer sees of the polygon: where that bends inwards, the ear would hide
+// the segment or the side.
+float Polygon::coverOf(std::size_t k) const {
+  const std::size_t first = before(k), last = after(k);
+  const vec2 &a = vertices_[first].place, &b = vertices_[k].place, &c = vertices_[last].place;
+  const float area = turn(a, b, c), side = area < 0.0f ? -1.0f : 1.0f;
+  float cover = 0.0f;
+  if (!encloses((a + b + c) * (1.0f / 3.0f))) {
+    const float longest = std::max({glm::length(b - a), glm::length(c - b), glm::length(a - c)});
+    cover = longest > 0.0f ? std::abs(area) / longest : 0.0f;
+  }
+  for (std::size_t other = 0; other < size_; ++other) {
+    const vec2& p = vertices_[other].place;
+    if (other == first || other == k || other == last) continue;
+    if (side * turn(a, b, p) > 0.0f && side * turn(b, c, p) > 0.0f && side * turn(c, a, p) > 0.0f)
+      cover = std::max(cover, distanceFromLine(p, a, c));
+  }
+  return cover;
+}
+
+// The ear with a short diagonal and little cover, among those that are no points of a straight line and do not leave one
+// behind.
+std::size_t Polygon::bestEar() const {
   std::size_t best = size_;
   float least = std::numeric_limits<float>::infinity();
   for (std::size_t k = 0; k < size_; ++k) {
-    const Vertex &before = vertices_[k == 0 ? size_ - 1 : k - 1],
-                 &after = vertices_[k + 1 == size_ ? 0 : k + 1];
-    if ((before.lines & vertices_[k].lines & after.lines) != 0) continue;
-    const vec3 diagonal = after.place - before.place;
-    const float length2 = dot(diagonal, diagonal);
-    if (!(length2 < least) || linesWithout(k) != 0) continue;
-    least = length2;
+    const Vertex &previous = vertices_[before(k)], &next = vertices_[after(k)];
+    if ((previous.lines & vertices_[k].lines & next.lines) != 0) continue;
+    const float diagonal = glm::length(next.place - previous.place);
+    if (!(diagonal < least) || linesWithout(k) != 0) continue;
+    const float cost = diagonal + kCoverCost * coverOf(k);
+    if (!(cost < least)) continue;
+    least = cost;
     best = k;
   }
   return best;
@@ -73,10 +131,9 @@ void Polygon::triangulate(Pieces& pieces) {
     return;
   }
   while (size_ > 3) {
-    const std::size_t ear = shortestEar();
+    const std::size_t ear = bestEar();
     LIMN_ASSERT(ear < size_, size_);
-    pieces.add(vertices_[ear == 0 ? size_ - 1 : ear - 1].index, vertices_[ear].index,
-               vertices_[ear + 1 == size_ ? 0 : ear + 1].index);
+    pieces.add(vertices_[before(ear)].index, vertices_[ear].index, vertices_[after(ear)].index);
     --size_;
     for (std::size_t k = ear; k < size_; ++k) vertices_[k] = vertices_[k + 1];
   }
@@ -111,7 +168,7 @@ struct CutOutline {
 };
 
 // The fan (A; s_0 … s_n) and the strip between s_0 … s_n and BC.
-void fanAndStrip(const CutOutline& o, const View& view, const Places& places, Pieces& pieces) {
+void fanAndStrip(const CutOutline& o, const Seen& seen, Pieces& pieces) {
   const std::uint32_t a = o.outline.corners[o.out], b = o.outline.corners[o.across];
   const std::uint32_t c = o.outline.corners[o.back];
   const auto samples = o.cut.samples;
@@ -119,18 +176,18 @@ void fanAndStrip(const CutOutline& o, const View& view, const Places& places, Pi
   const auto sample = [&](std::size_t k) {
     return k == 0 ? o.first() : k == steps ? o.last() : samples[k - 1];
   };
-  // Distance from the plane through the eye and BC: what the viewer sees of the distance from BC.
-  const vec3 plane = glm::cross(places[c] - places[b], towardsEye(view, places[b]));
-  std::size_t turn = 0;
+  // The strip turns at the sample that is seen nearest to BC.
+  const vec2 placeB = seen[b], placeC = seen[c];
+  std::size_t turning = 0;
   float nearest = std::numeric_limits<float>::infinity();
   for (std::size_t k = 0; k <= steps; ++k) {
-    const float distance = std::abs(dot(places[sample(k)] - places[b], plane));
-    if (distance < nearest) nearest = distance, turn = k;
+    const float distance = distanceFromLine(seen[sample(k)], placeB, placeC);
+    if (distance < nearest) nearest = distance, turning = k;
   }
   for (std::size_t k = 0; k < steps; ++k) pieces.add(a, sample(k), sample(k + 1));
-  for (std::size_t k = 0; k < turn; ++k) pieces.add(b, sample(k + 1), sample(k));
-  pieces.add(b, c, sample(turn));
-  for (std::size_t k = turn; k < steps; ++k) pieces.add(c, sample(k + 1), sample(k));
+  for (std::size_t k = 0; k < turning; ++k) pieces.add(b, sample(k + 1), sample(k));
+  pieces.add(b, c, sample(turning));
+  for (std::size_t k = turning; k < steps; ++k) pieces.add(c, sample(k + 1), sample(k));
 }
 
 }  // namespace
@@ -153,23 +210,25 @@ void remesh(const Outline& outline, Pieces& pieces) {
     pieces.add(around[apex], around[(apex + k) % size], around[(apex + k + 1) % size]);
 }
 
-void remesh(const Outline& outline, const Cut& cut, const View& view, const Places& places, Pieces& pieces) {
+void remesh(const Outline& outline, const Cut& cut, const PixelBound& bound, const Places& places,
+            Pieces& pieces) {
   const CutOutline o(outline, cut);
+  const Seen seen{bound, places};
   if (o.isPlain()) {
-    fanAndStrip(o, view, places, pieces);
+    fanAndStrip(o, seen, pieces);
     return;
   }
   const unsigned inner = kSegmentLine | (o.linesOf(o.out, cut.ends[0]) & o.linesOf(o.back, cut.ends[1]));
   const bool backToLone = cut.ends[1] > outline.counts[o.back], outToB = cut.ends[0] > outline.counts[o.out];
   const auto add = [&](Polygon& polygon, std::size_t side, std::size_t k, bool onSegment) {
-    polygon.add(outline.onSide(side, k), o.linesOf(side, k) | (onSegment ? kSegmentLine : 0u), places);
+    polygon.add(outline.onSide(side, k), o.linesOf(side, k) | (onSegment ? kSegmentLine : 0u), seen);
   };
 
   // From A to the first end, along the segment, and from its last end back.
   Polygon lone;
   for (std::size_t k = 0; k <= cut.ends[0]; ++k)
     add(lone, o.out, k, k == cut.ends[0] || (k == 0 && backToLone));
-  for (const std::uint32_t sample : cut.samples) lone.add(sample, inner, places);
+  for (const std::uint32_t sample : cut.samples) lone.add(sample, inner, seen);
   for (std::size_t k = cut.ends[1]; k <= outline.counts[o.back]; ++k) add(lone, o.back, k, k == cut.ends[1]);
   lone.triangulate(pieces);
 
@@ -178,7 +237,7 @@ void remesh(const Outline& outline, const Cut& cut, const View& view, const Plac
   for (std::size_t k = cut.ends[0]; k <= outline.counts[o.out]; ++k) add(far, o.out, k, k == cut.ends[0]);
   for (std::size_t k = 0; k <= outline.counts[o.across]; ++k) add(far, o.across, k, k == 0 && outToB);
   for (std::size_t k = 0; k <= cut.ends[1]; ++k) add(far, o.back, k, k == cut.ends[1]);
-  for (std::size_t k = cut.samples.size(); k-- > 0;) far.add(cut.samples[k], inner, places);
+  for (std::size_t k = cut.samples.size(); k-- > 0;) far.add(cut.samples[k], inner, seen);
   far.triangulate(pieces);
 }
 

@@ -3,9 +3,10 @@
 // Based on: L. Wang et al., "Silhouette Smoothing for Real-Time Rendering of Mesh Surfaces", section III.E and
 // figures 11 and 12. Differs in: the strip's diagonals turn at the sample that is nearest to the far side as
 // the viewer sees it, which folds nothing whether the segment bulges outwards or inwards; any number of points
-// on any side, and segments that end at a corner, are handled; where both meet, ears are clipped in the
+// on any side, and segments that end at a corner, are handled; where both meet, ears are clipped: in the
 // triangle's own plane of weights, in which the sides and the segment are straight lines and "on one line" is a
-// matter of bookkeeping, never of rounding.
+// matter of bookkeeping, never of rounding; and in such an order that, as the viewer sees it, no diagonal passes outside a
+// segment or side that bends inwards, which would hide it.
 //
 // Topology apart from geometry: which vertices a side has belongs to the edge, so two triangles at an edge
 // always insert the same ones, and the stream is watertight whatever the positions are.
@@ -17,6 +18,7 @@
 #include <glm/vec3.hpp>
 #include <span>
 
+#include "silhouette/pixel_bound.h"
 #include "silhouette/refine.h"
 
 namespace limn::silhouette {
@@ -74,6 +76,7 @@ struct Places {
 void remesh(const Outline& outline, Pieces& pieces);
 
 /// The pieces on both sides of a segment: 1 + vertices on the sides + 2 · samples of them.
-void remesh(const Outline& outline, const Cut& cut, const View& view, const Places& places, Pieces& pieces);
+void remesh(const Outline& outline, const Cut& cut, const PixelBound& bound, const Places& places,
+            Pieces& pieces);
 
 }  // namespace limn::silhouette

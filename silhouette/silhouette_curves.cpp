@@ -421,7 +421,7 @@ void Pass::emitPieces(std::size_t k) {
                     {triangle, (1.0f - t) * segment.weights[0] + t * segment.weights[1]}, kLinear);
     }
     cut.samples = std::span(samples).first(segment.steps - 1);
-    remesh(outline, cut, view, {mesh.positions, stream.positions}, pieces);
+    remesh(outline, cut, bound, {mesh.positions, stream.positions}, pieces);
   } else {
     if (outline.wantsCentre()) {
       outline.centre = firstNew() + slot.vertex;

@@ -75,5 +75,20 @@ TEST(Coherence, ChangeGrowsWithTheStep) {
   EXPECT_NEAR(large / small, 4.0, 1.5);
 }
 
+// Silhouette curves at 0.05 degrees a step: nothing jumps by more than the tolerance, the concave inner rim of the torus
+// and the crossings of the knot included. (1 / 16 pixel is what the masks tell apart.)
+TEST(Coherence, CurvesDoNotPop) {
+  Workers workers(2);
+  for (const char* model : {"builtin:sphere-200", "builtin:torus-576", "builtin:knot-480"}) {
+    Variant curves{"curves", {}};
+    curves.parameters.method = silhouette::Method::kCurves;
+    curves.parameters.tolerance = 0.125f;
+    const Coherence coherence =
+        measureCoherence(loadSubject(makePair(model, "")), {curves}, {1.5, 0.05}, 512, workers).front();
+    EXPECT_LE(coherence.localPop, 0.125 + 1.0 / 16) << model;
+    EXPECT_LT(coherence.pop, 0.0125) << model;
+  }
+}
+
 }  // namespace
 }  // namespace limn::measure

@@ -99,7 +99,7 @@ TEST(Remesh, SidesWithoutASegment) {
 
 // Every number of vertices on the sides, every pair of ends, corners included, every lone corner.
 TEST(Remesh, EverySegment) {
-  const View view = orthographicAlong({0, 0, -1});
+  const PixelBound bound(orthographicAlong({0, 0, -1}));
   for (std::size_t code = 0; code < 64; ++code)
     for (std::size_t lone = 0; lone < 3; ++lone) {
       const std::array<std::size_t, 3> counts{code % 4, code / 4 % 4, code / 16};
@@ -112,7 +112,7 @@ TEST(Remesh, EverySegment) {
             flat.addSides(counts);
             flat.addCut(lone, {first, last}, samples);
             Pieces pieces;
-            remesh(flat.outline, flat.cut, view, {flat.places, {}}, pieces);
+            remesh(flat.outline, flat.cut, bound, {flat.places, {}}, pieces);
             const std::string name = "counts " + std::to_string(code) + " lone " + std::to_string(lone) +
                                      " ends " + std::to_string(first) + " " + std::to_string(last);
             EXPECT_EQ(pieces.count, 1 + counts[0] + counts[1] + counts[2] + 2 * samples) << name;
@@ -127,7 +127,7 @@ TEST(Remesh, EverySegment) {
 // A segment that bulges towards the far side, and one that bulges away from it, as far as it stays inside the
 // triangle (beyond it starts at more than the 49 degrees of the corner): no piece faces the other way.
 TEST(Remesh, StripDoesNotFold) {
-  const View view = orthographicAlong({0, 0, -1});
+  const PixelBound bound(orthographicAlong({0, 0, -1}));
   for (int bulge = -9; bulge <= 9; ++bulge) {
     Flat flat;
     flat.addSides({1, 0, 1});
@@ -140,10 +140,37 @@ TEST(Remesh, StripDoesNotFold) {
           0.4f * static_cast<float>(bulge) / 3.0f * t * (1.0f - t) * 4.0f * outwards;
     }
     Pieces pieces;
-    remesh(flat.outline, flat.cut, view, {flat.places, {}}, pieces);
+    remesh(flat.outline, flat.cut, bound, {flat.places, {}}, pieces);
     bool negative = false;
     EXPECT_NEAR(area(flat, pieces, negative), 28.0f, 1e-3f) << bulge;
     EXPECT_FALSE(negative) << bulge;
+  }
+}
+
+// A side that bends inwards, and a segment that cuts off a corner at its end: a diagonal from the segment to the middle of
+// the side would hide it.
+TEST(Remesh, NoDiagonalHidesASideThatBendsInwards) {
+  const PixelBound bound(orthographicAlong({0, 0, -1}));
+  for (int depth = 0; depth <= 10; ++depth) {
+    Flat flat;
+    flat.addSides({4, 0, 1});
+    const std::array<float, 4> x{0.4f, 2.0f, 4.0f, 6.0f};
+    float removed = 0.0f;  // between the side and the line that it was
+    vec3 before(0.0f);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const vec3 place(x[k], 0.1f * static_cast<float>(depth) * x[k] * (8.0f - x[k]) / 16.0f, 0.0f);
+      flat.places[flat.outline.sides[0][k]] = place;
+      removed += 0.5f * (before.y + place.y) * (place.x - before.x);
+      before = place;
+    }
+    removed += 0.5f * before.y * (8.0f - before.x);
+    flat.places[flat.outline.sides[2][0]] = {0.1f, 0.35f, 0.0f};
+    flat.addCut(0, {1, 1}, 0);
+    Pieces pieces;
+    remesh(flat.outline, flat.cut, bound, {flat.places, {}}, pieces);
+    bool negative = false;
+    EXPECT_NEAR(area(flat, pieces, negative), 28.0f - removed, 1e-3f) << depth;
+    EXPECT_FALSE(negative) << depth;
   }
 }
 
