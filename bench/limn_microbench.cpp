@@ -37,25 +37,25 @@ struct Ball {
 
 void sines(benchmark::State& state) {
   double x = 0.1;
-  for (auto _ : state) benchmark::DoNotOptimize(sinCos(x += 0.37));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(sinCos(x += 0.37));
 }
 BENCHMARK(sines);
 
 void powers(benchmark::State& state) {
   double x = 0.1;
-  for (auto _ : state) benchmark::DoNotOptimize(power(x += 1e-6, 2.4));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(power(x += 1e-6, 2.4));
 }
 BENCHMARK(powers);
 
 void contourRoots(benchmark::State& state) {
   double b = -1.0;
-  for (auto _ : state) benchmark::DoNotOptimize(silhouette::contourRoot(0.3, b += 1e-6, -0.7));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(silhouette::contourRoot(0.3, b += 1e-6, -0.7));
 }
 BENCHMARK(contourRoots);
 
 void topology(benchmark::State& state) {
   const Ball ball(static_cast<int>(state.range(0)));
-  for (auto _ : state) benchmark::DoNotOptimize(silhouette::Topology(ball.shape).edges().data());
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(silhouette::Topology(ball.shape).edges().data());
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ball.shape.triangleCount()));
 }
 BENCHMARK(topology)->Arg(2)->Arg(5)->Unit(benchmark::kMicrosecond);
@@ -68,7 +68,7 @@ void silhouetteness(benchmark::State& state) {
   test.prepare(ball.shape, ball.topology, parameters, silhouette::Crew(0));
   const silhouette::View view = ball.view();
   const std::size_t edges = ball.topology.edges().size();
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     float sum = 0.0f;
     for (std::size_t e = 0; e < edges; ++e) sum += test.alpha(view, parameters, e);
     benchmark::DoNotOptimize(sum);
@@ -82,7 +82,7 @@ void edgeCurves(benchmark::State& state) {
   std::vector<silhouette::CurveOffsets> curves;
   silhouette::RobustEnds robust;
   const silhouette::CurveStyle style{static_cast<silhouette::Tangents>(state.range(0)), state.range(1) != 0};
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     const silhouette::Crew crew(0);
     robust.prepare(ball.shape, ball.topology, crew);
     silhouette::computeEdgeCurves(ball.shape, ball.topology, style, crew, robust, curves);
@@ -122,7 +122,7 @@ void classification(benchmark::State& state) {
   }
   std::vector<float> alphas(silhouette::kEdgesPerCluster);
   float scale = 0.0f;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     std::uint64_t bends = 0;
     for (std::size_t c = 0; c < clusters.count(); ++c)
       bends ^= clusters.classify(c, eye, test, alphas, scale);
@@ -147,7 +147,7 @@ void classificationOfMany(benchmark::State& state) {
   silhouette::RefineReport report;
   const silhouette::View view = ball.view();
   refiner.refine(view, parameters, stream, &report);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     refiner.refine(view, parameters, stream, &report);
     state.SetIterationTime(1e-3 * report.classifyMs);
   }
@@ -170,7 +170,7 @@ void refine(benchmark::State& state, Method method, double tolerance) {
   parameters.tolerance = static_cast<float>(tolerance);
   silhouette::RefinedStream stream;
   const silhouette::View view = ball.view();
-  for (auto _ : state) refiner.refine(view, parameters, stream);
+  for ([[maybe_unused]] auto _ : state) refiner.refine(view, parameters, stream);
   state.counters["triangles_out"] = static_cast<double>(stream.triangleCount());
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ball.shape.triangleCount()));
 }
@@ -199,7 +199,7 @@ void frame(benchmark::State& state, Method method) {
   settings.samples = static_cast<int>(state.range(1));
   settings.refinement.method = method;
   scene::Image image;
-  for (auto _ : state) drawer.draw(pose, camera, settings, image);
+  for ([[maybe_unused]] auto _ : state) drawer.draw(pose, camera, settings, image);
   state.SetItemsProcessed(state.iterations() * kSize * kSize);
 }
 BENCHMARK_CAPTURE(frame, flat, Method::kFlat)
@@ -218,7 +218,7 @@ BENCHMARK_CAPTURE(frame, patches, Method::kPatches)
 void encodePng(benchmark::State& state) {
   scene::Image image{kSize, kSize, std::vector<std::uint8_t>(std::size_t{kSize} * kSize * 4)};
   for (std::size_t i = 0; i < image.rgba.size(); ++i) image.rgba[i] = static_cast<std::uint8_t>(i * i / 4096);
-  for (auto _ : state)
+  for ([[maybe_unused]] auto _ : state)
     benchmark::DoNotOptimize(scene::encodePng(image, {}, static_cast<int>(state.range(0))).size());
   state.SetItemsProcessed(state.iterations() * kSize * kSize);
 }

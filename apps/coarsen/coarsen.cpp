@@ -176,9 +176,10 @@ std::optional<scene::Mesh> coarsenWithin(const scene::Mesh& fine, const OutlineP
     (keeps(at(middle), spread) ? high : low) = middle;
     tell(progress, 0.5, 0.9, 1.0 / (1.0 + std::log(high / low)));
   }
-  for (; high < most; high *= kStep) {
+  while (high < most) {
     scene::Mesh small = at(high);
     if (keeps(small, spread) && keeps(small, byChance)) return small;
+    high *= kStep;
   }
   return std::nullopt;
 }
