@@ -38,7 +38,7 @@ void blendPixel(Tile& tile, TriangleSetup& t, int x, int y) {
 }  // namespace
 
 void openPixel(Tile& tile, int x, int y) {
-  std::uint8_t& isBlended = tile.isBlended[tile.offset(0, x, y)];
+  std::uint8_t& isBlended = tile.isBlended[tile.pixelOffset(x, y)];
   if (isBlended != 0) return;
   isBlended = 1;
   const glm::vec4 b = tile.context->frame.background;

@@ -24,7 +24,7 @@ struct MicroQueue : TriangleQueue {
 
 class Micro {
  public:
-  explicit Micro(Tile& tile) : tile_(tile) {}
+  explicit Micro(Tile& tile) : tile_(tile), severalSamples_(tile.hasSeveralSamples()) {}
 
   void draw(const ClusterInTile& cluster, const MicroQueue& queue) {
     for (std::size_t i = 0; i < queue.count; i += kLanes) {
@@ -51,9 +51,10 @@ class Micro {
     hn::Store(t.x1, f, x1_), hn::Store(t.x2, f, x2_), hn::Store(t.y1, f, y1_), hn::Store(t.y2, f, y2_);
     const VI left = hn::Sub(t.px.first, hn::Set(d, tile_.left)),
              top = hn::Sub(t.py.first, hn::Set(d, tile_.top));
-    hn::Store(hn::Add(hn::Mul(top, hn::Set(d, tile_.stride)), left), d, corner_);
+    hn::Store(left, d, left_), hn::Store(top, d, top_);
     hn::Store(centerFrom(t.px.first, t.x[0]), f, centerX_);
     hn::Store(centerFrom(t.py.first, t.y[0]), f, centerY_);
+    if (severalSamples_) setCenterEdges(t, left, top);
     MI seen = hn::FirstN(d, 0);
     listed_ = 0;
     const VI ramp = hn::Iota(d, 0);
@@ -90,6 +91,16 @@ class Micro {
     for (std::size_t i = 0; i < listed_; ++i) write(i);
   }
 
+  HWY_INLINE void setCenterEdges(const TriangleVector& t, VI left, VI top) {
+    const I d;
+    for (int k = 0; k < 3; ++k) {
+      const VI stepX = hn::Neg(t.edgeY[k]), stepY = t.edgeX[k];
+      const VI first = hn::ShiftRight<kSubpixelBits>(t.edgeAt(k, kOneSample[0]));
+      hn::Store(hn::Sub(first, hn::Add(hn::Mul(left, stepX), hn::Mul(top, stepY))), d, edge_[k]);
+      hn::Store(stepX, d, edgeStepX_[k]), hn::Store(stepY, d, edgeStepY_[k]);
+    }
+  }
+
   // How far the first pixels' centres are from the anchors.
   HWY_INLINE static VF centerFrom(VI pixel, VI anchor) {
     const VI center = hn::Add(hn::ShiftLeft<kSubpixelBits>(pixel), hn::Set(I(), kOneSample[0].x));
@@ -102,8 +113,9 @@ class Micro {
     const std::size_t lane = place & (kLanes - 1), sample = place >> kSampleShift;
     const std::uint32_t row = (place >> kRowShift) & 3U, column = (place >> kColumnShift) & 3U;
     const std::size_t pixel =
-        static_cast<std::size_t>(corner_[lane]) + row * static_cast<std::size_t>(tile_.stride) + column;
-    const std::size_t o = sample * tile_.plane + pixel;
+        tile_.pixelOffset(left_[lane] + static_cast<int>(column), top_[lane] + static_cast<int>(row));
+    const std::size_t o =
+        severalSamples_ ? (sample / kGroup * tile_.plane + pixel) * kGroup + sample % kGroup : pixel;
     const float depth = depth_[i];
     if (depth < tile_.depth[o]) return;
     if (depth == tile_.depth[o] && !winsTie(lane, tile_.ids[o])) return;
@@ -115,10 +127,11 @@ class Micro {
     const auto dx = hn::Set(f, centerX_[lane] + static_cast<float>(column * kSubpixels)),
                dy = hn::Set(f, centerY_[lane] + static_cast<float>(row * kSubpixels));
     const auto start = hn::Add(hn::Load(f, record.origin), hn::Mul(hn::Load(f, record.slopeY), dy));
+    const auto values = hn::Add(start, hn::Mul(hn::Load(f, record.slopeX), dx));
+    if (severalSamples_) return hn::Store(values, f, &tile_.centers[4 * pixel]);
     alignas(16) float value[4];
-    hn::Store(hn::Add(start, hn::Mul(hn::Load(f, record.slopeX), dx)), f, value);
+    hn::Store(values, f, value);
     for (std::size_t k = 0; k < 3; ++k) tile_.normal[k][pixel] = value[k];
-    if (tile_.context->samples.size() > 1) tile_.centerDepth[pixel] = value[3];
   }
 
   std::uint32_t tagOf(std::size_t lane) const {
@@ -137,9 +150,12 @@ class Micro {
     const std::uint32_t id = tile_.recordCount++;
     id_[lane] = id;
     cluster_->setRecord(tagOf(lane), x1_[lane], x2_[lane], y1_[lane], y2_[lane], tile_.records[id]);
-    if (!tile_.keepsCorners()) return;
-    Corners& c = tile_.corners[id];
-    for (int k = 0; k < 3; ++k) c.x[k] = queue_->x[k][first_ + lane], c.y[k] = queue_->y[k][first_ + lane];
+    if (!severalSamples_) return;
+    CenterEdges& edges = tile_.centerEdges[id];
+    for (int k = 0; k < 3; ++k)
+      edges.value[k] = edge_[k][lane], edges.stepX[k] = edgeStepX_[k][lane],
+      edges.stepY[k] = edgeStepY_[k][lane];
+    edges.value[3] = edges.stepX[3] = edges.stepY[3] = 0;
   }
 
   // A listed sample's place: its triangle's lane, and where in the triangle's box it is.
@@ -147,13 +163,15 @@ class Micro {
   static constexpr std::size_t kPixels = (MicroQueue::kReach + 1) * (MicroQueue::kReach + 1);
 
   Tile& tile_;
+  bool severalSamples_;
   const ClusterInTile* cluster_ = nullptr;
   const MicroQueue* queue_ = nullptr;
   std::size_t first_ = 0;
-  // Of the vector of triangles: their plane bases, records, the tile's offsets of their first pixels, and how far
+  // Of the vector of triangles: their plane bases, records, their first pixels in the tile, and how far
   // these pixels' centres are from where the planes are anchored.
   alignas(64) float x1_[kLanes], x2_[kLanes], y1_[kLanes], y2_[kLanes], centerX_[kLanes], centerY_[kLanes];
-  alignas(64) std::int32_t corner_[kLanes];
+  alignas(64) std::int32_t left_[kLanes], top_[kLanes];
+  alignas(64) std::int32_t edge_[3][kLanes], edgeStepX_[3][kLanes], edgeStepY_[3][kLanes];  // CenterEdges
   std::uint32_t id_[kLanes];
   // The samples that they cover.
   std::size_t listed_ = 0;

@@ -18,10 +18,11 @@ class Shader {
       : tile_(tile), context_(*tile.context), samples_(static_cast<int>(context_.samples.size())) {}
 
   void pixel(int x, int y) {
+    if (!tile_.isTouched(x, y)) return write(x, y, context_.frame.background);
     glm::vec4 sum(0.0F);
     unsigned left = (1U << samples_) - 1U;
     int empty = 0;
-    const bool blended = tile_.overlaid && tile_.isBlended[tile_.offset(0, x, y)] != 0;
+    const bool blended = tile_.overlaid && tile_.isBlended[tile_.pixelOffset(x, y)] != 0;
     for (int s = 0; s < samples_; ++s) {
       const std::size_t o = tile_.offset(s, x, y);
       if (tile_.ids[o] == kNoRecord) {

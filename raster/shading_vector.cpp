@@ -34,7 +34,6 @@ class Shading {
         context_(*tile.context),
         lighting_(context_.map, context_.frame.lights),
         background_(packed(context_.frame.background)),
-        depth_(context_.samples.size() > 1 ? tile.centerDepth.data() : tile.depth.data()),
         fragments_(tile, lighting_) {
     for (int x = 0; x < tile.width; x += static_cast<int>(kLanes))
       hn::Store(lighting_.rayX(centersFrom(x)), F(), rayX_ + x);
@@ -46,15 +45,18 @@ class Shading {
     const bool simple = samples_ == 1 && tile_.plainMaterial != nullptr && !tile_.overlaid;
     for (int y = 0; y < tile_.height; ++y) {
       rayY_ = hn::GetLane(lighting_.rayY(hn::Set(I(), (tile_.top + y) * kSubpixels + kOneSample[0].y)));
-      const int wholeBlocks = simple ? tile_.width - tile_.width % static_cast<int>(kLanes) : 0;
-      for (int x = 0; x < wholeBlocks; x += static_cast<int>(kLanes)) simpleBlock(x, y);
-      for (int x = wholeBlocks; x < tile_.width; x += static_cast<int>(kLanes)) {
-        if (samples_ == 1)
-          block<1>(x, y);
-        else if (samples_ == 4)
-          block<4>(x, y);
+      for (int x = 0; x < tile_.width; x += Tile::kCellWidth) {
+        const int end = std::min(x + Tile::kCellWidth, tile_.width);
+        if (!tile_.isTouched(x, y))
+          for (int i = x; i < end; i += static_cast<int>(kLanes)) store(hn::Set(I(), background_), i, y);
+        else if (simple && end == x + Tile::kCellWidth)
+          for (int i = x; i < end; i += static_cast<int>(kLanes)) simpleBlock(i, y);
+        else if (samples_ == 1)
+          for (int i = x; i < end; i += static_cast<int>(kLanes)) block(i, y);
+        else if (samples_ == kGroup)
+          for (int i = x; i < end; i += static_cast<int>(kLanes)) sampledBlock<1>(i, y);
         else
-          block<8>(x, y);
+          for (int i = x; i < end; i += static_cast<int>(kLanes)) sampledBlock<2>(i, y);
       }
     }
     flush();
@@ -76,9 +78,8 @@ class Shading {
       for (int x = 0; x < tile_.width; x += static_cast<int>(kLanes)) store(hn::Set(I(), background_), x, y);
   }
 
-  HWY_INLINE VI idsAt(std::size_t sample, int x, int y) const {
-    const std::size_t o = tile_.offset(static_cast<int>(sample), x, y);
-    return hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(&tile_.ids[o]));
+  HWY_INLINE VI idsAt(int x, int y) const {
+    return hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(&tile_.ids[tile_.pixelOffset(x, y)]));
   }
 
   // Sub-pixel columns of the pixel centres from x on.
@@ -90,51 +91,65 @@ class Shading {
   // A vector of pixels that all lie within the tile and show the plain material or nothing.
   HWY_INLINE void simpleBlock(int x, int y) {
     const I d;
-    const MI seen = hn::Ne(idsAt(0, x, y), hn::Set(d, -1));
+    const MI seen = hn::Ne(idsAt(x, y), hn::Set(d, -1));
     if (hn::AllFalse(d, seen))
       hn::StoreU(hn::Set(d, background_), d, reinterpret_cast<std::int32_t*>(pixelAt(x, y)));
     else
       push(x, y, seen, true);
   }
 
-  template <std::size_t kSamples>
+  // A vector of pixels with one sample.
   HWY_INLINE void block(int x, int y) {
     const I d;
-    VI all[kSamples];
-    forEach(std::make_index_sequence<kSamples>(), [&](auto s) HWY_ATTR { all[s] = idsAt(s, x, y); });
-    const VI ids = all[0];
+    const VI ids = idsAt(x, y);
     const MI inside = hn::FirstN(d, static_cast<std::size_t>(tile_.width - x));
-    MI whole = inside;  // pixels all of whose samples show the same
-    forEach(std::make_index_sequence<kSamples>(),
-            [&](auto s) HWY_ATTR { whole = hn::And(whole, hn::Eq(ids, all[s])); });
-    if (tile_.overlaid) whole = hn::And(whole, notBlended(x, y));
-    const MI nothing = hn::Eq(ids, hn::Set(d, -1)), seen = hn::AndNot(nothing, whole);
+    const MI whole = tile_.overlaid ? hn::And(inside, notBlended(x, y)) : inside;
+    const MI nothing = hn::Eq(ids, hn::Set(d, -1));
     if (!hn::AllFalse(d, hn::And(nothing, whole))) store(hn::Set(d, background_), x, y);
-    MI left = hn::AndNot(whole, inside);
-    if (!hn::AllFalse(d, seen)) {
-      if (tile_.plainMaterial != nullptr)
-        push(x, y, seen);
-      else
-        left = hn::Or(left, pushByMaterial(x, y, ids, seen));
-    }
-    if (hn::AllFalse(d, left)) return;
-    if (samples_ == 1 || tile_.overlaid || tile_.plainMaterial == nullptr) left = leaveSome(left, x, y);
-    if (!hn::AllFalse(d, left)) fragments_.add(x, y, left, all, pixelAt(x, y));
+    MI left =
+        hn::Or(hn::AndNot(whole, inside), pushSeen(x, y, hn::AndNot(nothing, whole), [&] { return ids; }));
+    for (unsigned bits = bitsOf(left); bits != 0; bits &= bits - 1)
+      shadePixelScalar(tile_, x + std::countr_zero(bits), y);
+  }
+
+  // A vector of pixels with several samples.
+  template <std::size_t kGroups>
+  HWY_INLINE void sampledBlock(int x, int y) {
+    const I d;
+    const SampledIds<kGroups> ids(tile_, x, y);
+    const unsigned inside = bitsOf(hn::FirstN(d, static_cast<std::size_t>(tile_.width - x)));
+    unsigned whole = inside & ids.uniform();  // pixels all of whose samples show the same
+    if (tile_.overlaid) whole &= bitsOf(notBlended(x, y));
+    const unsigned seen = whole & ids.seen();
+    if (seen != whole) store(hn::Set(d, background_), x, y);
+    unsigned left = inside & ~whole;
+    if (seen != 0) left |= bitsOf(pushSeen(x, y, lanesOf(seen), [&] { return ids.first(); }));
+    if (left == 0) return;
+    if (tile_.overlaid || tile_.plainMaterial == nullptr) left = leaveSome(left, x, y);
+    if (left != 0) fragments_.add<kGroups>(x, y, left);
+  }
+
+  // Adds pixels whose samples show one triangle each, by `ids()`, to the points; returns what is left to others.
+  template <class Ids>
+  HWY_INLINE MI pushSeen(int x, int y, MI seen, const Ids& ids) {
+    const MI none = hn::FirstN(I(), 0);
+    if (hn::AllFalse(I(), seen)) return none;
+    if (tile_.plainMaterial == nullptr) return pushByMaterial(x, y, ids(), seen);
+    push(x, y, seen);
+    return none;
   }
 
   // Leaves to the definition what a vector cannot handle, and returns the others.
-  MI leaveSome(MI pixels, int x, int y) {
-    const I d;
-    alignas(64) std::int32_t lanes[kLanes];
-    hn::Store(hn::VecFromMask(d, pixels), d, lanes);
-    for (unsigned left = bitsOf(pixels); left != 0; left &= left - 1) {
+  unsigned leaveSome(unsigned pixels, int x, int y) {
+    unsigned others = pixels;
+    for (unsigned left = pixels; left != 0; left &= left - 1) {
       const int lane = std::countr_zero(left);
-      const bool blended = tile_.overlaid && tile_.isBlended[tile_.offset(0, x + lane, y)] != 0;
-      if (samples_ > 1 && !blended && !showsComplex(x + lane, y)) continue;
+      const bool blended = tile_.overlaid && tile_.isBlended[tile_.pixelOffset(x + lane, y)] != 0;
+      if (!blended && !showsComplex(x + lane, y)) continue;
       shadePixelScalar(tile_, x + lane, y);
-      lanes[lane] = 0;
+      others &= ~(1U << lane);
     }
-    return hn::Ne(hn::Load(d, lanes), hn::Zero(d));
+    return others;
   }
 
   bool showsComplex(int x, int y) const {
@@ -150,7 +165,7 @@ class Shading {
     const I d;
     alignas(64) std::int32_t free[kLanes];
     for (std::size_t i = 0; i < kLanes; ++i)
-      free[i] = tile_.isBlended[tile_.offset(0, x, y) + i] == 0 ? 1 : 0;
+      free[i] = tile_.isBlended[tile_.pixelOffset(x, y) + i] == 0 ? 1 : 0;
     return hn::Ne(hn::Load(d, free), hn::Zero(d));
   }
 
@@ -183,15 +198,20 @@ class Shading {
   HWY_INLINE std::size_t push(int x, int y, MI lanes, bool overBackground = false) {
     const F f;
     if (points_.count == PointBatch::kSize) flush();
-    const std::size_t o = tile_.offset(0, x, y), n = points_.count;
+    const std::size_t o = tile_.pixelOffset(x, y), n = points_.count;
     hn::Store(hn::Load(f, rayX_ + x), f, points_.rayX + n);
     hn::Store(hn::Set(f, rayY_), f, points_.rayY + n);
-    const VF nx = hn::LoadU(f, tile_.normal[0].data() + o), ny = hn::LoadU(f, tile_.normal[1].data() + o),
-             nz = hn::LoadU(f, tile_.normal[2].data() + o);
+    VF nx, ny, nz, depth;
+    if (samples_ > 1) {
+      hn::LoadInterleaved4(f, &tile_.centers[4 * o], nx, ny, nz, depth);
+    } else {
+      nx = hn::LoadU(f, tile_.normal[0].data() + o), ny = hn::LoadU(f, tile_.normal[1].data() + o);
+      nz = hn::LoadU(f, tile_.normal[2].data() + o), depth = hn::LoadU(f, tile_.depth.data() + o);
+    }
     hn::Store(nx, f, points_.normal[0] + n);
     hn::Store(ny, f, points_.normal[1] + n);
     hn::Store(nz, f, points_.normal[2] + n);
-    if (lighting_.needsDepth()) hn::Store(hn::LoadU(f, depth_ + o), f, points_.depth + n);
+    hn::Store(depth, f, points_.depth + n);
     const unsigned bits = bitsOf(lanes);
     places_[n / kLanes] = {pixelAt(x, y), bits, overBackground};
     shaded_ += static_cast<std::size_t>(std::popcount(bits));
@@ -229,9 +249,7 @@ class Shading {
 
   HWY_INLINE void write(VI color, const Place& at) const {
     const I d;
-    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(at.lanes),
-                                  static_cast<std::uint8_t>(at.lanes >> 8U)};
-    const MI lanes = hn::LoadMaskBits(d, bits);
+    const MI lanes = lanesOf(at.lanes);
     if (!at.overBackground) return storePixels(color, lanes, at.to);
     hn::StoreU(hn::IfThenElse(lanes, color, hn::Set(d, background_)), d,
                reinterpret_cast<std::int32_t*>(at.to));
@@ -243,7 +261,8 @@ class Shading {
     const F f;
     const VI px = centersFrom(x);
     const std::int32_t py = (tile_.top + y) * kSubpixels + kOneSample[0].y;
-    const std::uint32_t* row = &tile_.ids[tile_.offset(0, x, y)];
+    alignas(64) std::uint32_t row[kLanes];
+    hn::Store(ids, d, reinterpret_cast<std::int32_t*>(row));
     MI complex = hn::FirstN(d, 0);
     for (MI todo = seen; !hn::AllFalse(d, todo);) {
       const std::uint32_t first = row[static_cast<std::size_t>(hn::FindFirstTrue(d, todo))];
@@ -269,7 +288,7 @@ class Shading {
       const std::size_t n = push(x, y, mine);
       if (plain) continue;
       const bool perspective = context_.map.perspective;
-      const VF q = hn::LoadU(f, depth_ + tile_.offset(0, x, y)), one = hn::Set(f, 1.0F);
+      const VF q = hn::Load(f, points_.depth + n), one = hn::Set(f, 1.0F);
       const VF w = perspective ? hn::Div(one, q) : one;
       const Color base = baseOf(*material, attributes.color(px, w), attributes.footprint(px, w, perspective));
       hn::Store(base.r, f, points_.base[0] + n);
@@ -295,7 +314,6 @@ class Shading {
   const FrameContext& context_;
   Lighting lighting_;
   std::int32_t background_;
-  const float* depth_;  // of pixel centres
   Fragments fragments_;
   std::size_t samples_ = context_.samples.size(), shaded_ = 0;
 

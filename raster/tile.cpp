@@ -1,6 +1,7 @@
 #include "raster/tile.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "raster/base/scratch.h"
 
@@ -15,16 +16,17 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
   top = static_cast<int>(index / columns) * tiling.tileHeight;
   width = std::min(tiling.tileWidth, tiling.width - left);
   height = std::min(tiling.tileHeight, tiling.height - top);
-  stride = tiling.tileWidth + kRowPadding;
   clusters = c.front.clusterBins().of(index);
   loose = c.front.looseBins().of(index);
   blended = c.front.blendedBins().of(index);
-  plane = static_cast<std::size_t>(stride) * static_cast<std::size_t>(tiling.tileHeight) + kPlanePadding;
+  strip = static_cast<std::size_t>(tiling.tileHeight) * kStripWidth + kStripPadding;
+  plane = static_cast<std::size_t>(tiling.tileWidth) / kStripWidth * strip;
   const std::size_t samples = c.samples.size() * plane;
-  depth.assign(samples, kNoDepth);
-  ids.assign(samples, kNoRecord);
+  depth.resize(samples);
+  ids.resize(samples);
+  touched_ = 0;
   for (std::vector<float>& component : normal) component.resize(plane);
-  if (c.samples.size() > 1) centerDepth.resize(plane);
+  if (hasSeveralSamples()) centers.resize(4 * plane);
   sampleRange = {kSubpixels, 0};
   for (const SamplePosition at : c.samples) {
     sampleRange.low = std::min({sampleRange.low, at.x, at.y});
@@ -38,6 +40,9 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
     colors.resize(samples);
     isBlended.assign(plane, 0);
   }
+  const Target& target = c.target;
+  if (overlaid || target.depth != nullptr || target.normals != nullptr || target.ids != nullptr)
+    touch(0, 0, width, height);
   if (blocks.size() < clusters.size()) blocks.resize(clusters.size());
   surfaces.clear();
   for (const std::uint32_t item : clusters)
@@ -48,6 +53,21 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
     const bool textured =
         m.baseColorTexture != nullptr || m.normalTexture != nullptr || m.emissiveTexture != nullptr;
     if (&m != plainMaterial || s.hasColors || textured) plainMaterial = nullptr;
+  }
+}
+
+void Tile::clear(std::uint64_t cells) {
+  touched_ |= cells;
+  const std::size_t count = (hasSeveralSamples() ? kGroup : 1) * kCellWidth;
+  const int groups = std::max(1, static_cast<int>(context->samples.size() / kGroup));
+  for (; cells != 0; cells &= cells - 1) {
+    const int cell = std::countr_zero(cells), x = cell % 8 * kCellWidth, y = cell / 8 * kCellHeight;
+    const std::size_t size = count * static_cast<std::size_t>(std::min(kCellHeight, height - y));
+    for (int g = 0; g < groups; ++g) {
+      const std::size_t o = offset(g * static_cast<int>(kGroup), x, y);
+      std::memset(&depth[o], kNoDepthByte, size * sizeof(float));
+      std::memset(&ids[o], 0xff, size * sizeof(std::uint32_t));
+    }
   }
 }
 
@@ -88,6 +108,23 @@ Corners Tile::cornersOf(const Record& record, std::array<int, 3>& order) const {
   return c;
 }
 
+CenterEdges Tile::centerEdgesOf(const Corners& drawn) const {
+  CenterEdges result{};
+  const std::int32_t px = left * kSubpixels + kOneSample[0].x, py = top * kSubpixels + kOneSample[0].y;
+  for (int k = 0; k < 3; ++k) {
+    const Edge edge = Edge::of(drawn, k, k == 2 ? 0 : k + 1);
+    const std::int64_t value = edge.at(px, py) >> kSubpixelBits;
+    const std::int64_t acrossX = -static_cast<std::int64_t>(edge.dy) * (width - 1),
+                       acrossY = static_cast<std::int64_t>(edge.dx) * (height - 1);
+    // Where an edge crosses the tile, its values in it fit 32 bits.
+    if (value + std::min<std::int64_t>(acrossX, 0) + std::min<std::int64_t>(acrossY, 0) >= 0) continue;
+    result.value[k] = static_cast<std::int32_t>(value);
+    result.stepX[k] = -edge.dy;
+    result.stepY[k] = edge.dx;
+  }
+  return result;
+}
+
 std::uint64_t Tile::orderOf(const Record& record) const {
   const TriangleRef ref = refOf(record);
   const Batch& batch = context->batches[ref.batch];
@@ -95,16 +132,16 @@ std::uint64_t Tile::orderOf(const Record& record) const {
 }
 
 void Tile::levelMemory(std::vector<Tile>& tiles) {
-  levelCapacity(tiles, &Tile::depth, &Tile::ids, &Tile::centerDepth, &Tile::records, &Tile::corners,
+  levelCapacity(tiles, &Tile::depth, &Tile::ids, &Tile::centers, &Tile::records, &Tile::centerEdges,
                 &Tile::attributes, &Tile::surfaces, &Tile::blocks, &Tile::colors, &Tile::isBlended);
   for (std::size_t k = 0; k < 3; ++k)
     levelCapacity(tiles, [k](Tile& tile) -> std::vector<float>& { return tile.normal[k]; });
 }
 
 std::size_t Tile::memoryBytes() const {
-  return (depth.capacity() + 3 * normal[0].capacity() + centerDepth.capacity()) * sizeof(float) +
+  return (depth.capacity() + 3 * normal[0].capacity() + centers.capacity()) * sizeof(float) +
          ids.capacity() * sizeof(std::uint32_t) + records.capacity() * sizeof(Record) +
-         corners.capacity() * sizeof(Corners) + blocks.capacity() * sizeof(VertexBlock) +
+         centerEdges.capacity() * sizeof(CenterEdges) + blocks.capacity() * sizeof(VertexBlock) +
          surfaces.capacity() * sizeof(Surface) + attributes.capacity() * sizeof(Attributes) +
          colors.capacity() * sizeof(glm::vec4) + isBlended.capacity();
 }

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
+#include "raster/base/scratch.h"
 #include "raster/clip.h"
 #include "raster/front_end.h"
 #include "raster/lines.h"
@@ -34,10 +35,12 @@ struct FrameContext {
 };
 
 inline constexpr int kMaxSamples = 8;
+inline constexpr std::size_t kGroup = 4;  ///< samples of a pixel that lie side by side
 inline constexpr std::uint32_t kNoRecord = 0xffffffffU;
 /// Of an empty sample. What lies beyond the far plane is cut off, so whatever covers a sample is nearer than
-/// nothing, even where its depth is rounding noise.
-inline constexpr float kNoDepth = std::numeric_limits<float>::lowest();
+/// nothing, even where its depth is rounding noise. All bytes are the same, so that clearing is quick.
+inline constexpr unsigned char kNoDepthByte = 0xfe;
+inline constexpr float kNoDepth = std::bit_cast<float>(0xfefefefeU);
 
 /// A triangle that won at least one sample, or a micro triangle that covers one: the planes of its normal · q and depth, and where it comes from.
 struct alignas(64) Record {
@@ -51,6 +54,13 @@ struct alignas(64) Record {
   float value(int i, std::int32_t x, std::int32_t y) const {
     return (origin[i] + slopeY[i] * static_cast<float>(y - y0)) + slopeX[i] * static_cast<float>(x - x0);
   }
+};
+
+/// Whether a record's triangle covers the centres of pixels: its edge functions, divided by 256, at the centre of the
+/// tile's first pixel, and their steps. Modulo 2^32; at pixels that it covers a sample of they fit 32 bits. Edges that
+/// the centres of all those are inside of may be 0.
+struct alignas(16) CenterEdges {
+  std::int32_t value[4], stepX[4], stepY[4];
 };
 
 /// The planes of what else materials interpolate, each value times q.
@@ -76,10 +86,31 @@ class Tile {
 
   /// Nothing is drawn in it.
   bool isEmpty() const { return clusters.empty() && loose.empty() && !overlaid; }
-  std::size_t offset(int sample, int x, int y) const {  ///< x, y from the tile's corner
-    return static_cast<std::size_t>(sample) * plane +
-           static_cast<std::size_t>(y) * static_cast<std::size_t>(stride) + static_cast<std::size_t>(x);
+  /// Pixels lie in strips of columns, so that a row of a strip is what the longest vector holds and its rows follow each
+  /// other. x, y from the tile's corner.
+  std::size_t pixelOffset(int x, int y) const {
+    const auto column = static_cast<std::size_t>(x), row = static_cast<std::size_t>(y);
+    return column / kStripWidth * strip + row * kStripWidth + column % kStripWidth;
   }
+  /// Of several samples, four lie side by side: vectors hold those of a few pixels.
+  std::size_t offset(int sample, int x, int y) const {
+    if (!hasSeveralSamples()) return pixelOffset(x, y);
+    const auto s = static_cast<std::size_t>(sample);
+    return (s / kGroup * plane + pixelOffset(x, y)) * kGroup + s % kGroup;
+  }
+  /// Makes sure that the pixels [x0, x1) × [y0, y1), not none, have their samples: empty ones, where nothing was drawn.
+  void touch(int x0, int y0, int x1, int y1) {
+    const std::uint64_t columns = (2U << ((x1 - 1) / kCellWidth)) - (1U << (x0 / kCellWidth));
+    const std::uint64_t rows = (kFirstCells << (y0 / kCellHeight * 8)) &
+                               (kFirstCells >> ((kCellRows - 1 - (y1 - 1) / kCellHeight) * 8));
+    if (const std::uint64_t fresh = rows * columns & ~touched_; fresh != 0) clear(fresh);
+  }
+  /// Whether a pixel was; the others are empty, and nobody may look at their samples.
+  bool isTouched(int x, int y) const {
+    return ((touched_ >> (y / kCellHeight * 8 + x / kCellWidth)) & 1U) != 0;
+  }
+  static constexpr int kCellWidth = 16;  ///< pixels are cleared that many at a time
+  static constexpr std::size_t kStripWidth = kCellWidth;
   /// Where a record's triangle comes from.
   TriangleRef refOf(const Record& record) const;
   Surface surfaceOf(const Record& record) const {
@@ -98,22 +129,25 @@ class Tile {
   std::uint32_t add(const Record& record, const Corners& drawn) {
     reserveRecords(1);
     records[recordCount] = record;
-    if (keepsCorners()) corners[recordCount] = drawn;
+    if (hasSeveralSamples()) centerEdges[recordCount] = centerEdgesOf(drawn);
     return recordCount++;
   }
   /// Makes room for so many more.
   void reserveRecords(std::size_t count) {
     grow(records, recordCount + count);
-    if (keepsCorners()) grow(corners, recordCount + count);
+    if (hasSeveralSamples()) grow(centerEdges, recordCount + count);
   }
-  bool keepsCorners() const { return context->samples.size() > 1; }
+  bool hasSeveralSamples() const { return context->samples.size() > 1; }
+  CenterEdges centerEdgesOf(const Corners& drawn) const;
   /// Interpolates what shading needs of a record at the centre of a pixel that it has won a sample of.
   void setPoint(const Record& record, int x, int y) {
     const std::int32_t px = (left + x) * kSubpixels + kOneSample[0].x,
                        py = (top + y) * kSubpixels + kOneSample[0].y;
-    const std::size_t o = offset(0, x, y);
-    for (int i = 0; i < 3; ++i) normal[i][o] = record.value(i, px, py);
-    if (context->samples.size() > 1) centerDepth[o] = record.value(3, px, py);
+    const std::size_t o = pixelOffset(x, y);
+    if (hasSeveralSamples())
+      for (int i = 0; i < 4; ++i) centers[4 * o + static_cast<std::size_t>(i)] = record.value(i, px, py);
+    else
+      for (int i = 0; i < 3; ++i) normal[i][o] = record.value(i, px, py);
   }
   /// Submission order.
   std::uint64_t orderOf(const Record& record) const;
@@ -123,18 +157,18 @@ class Tile {
   static void levelMemory(std::vector<Tile>& tiles);
 
   const FrameContext* context = nullptr;
-  int left = 0, top = 0;           ///< of the tile in the window, pixels
-  int width = 0, height = 0;       ///< less at the window's edges
-  int stride = 0;                  ///< from row to row; kernels may write whole vectors beyond the width
-  std::size_t plane = 0;           ///< from sample to sample
-  std::vector<float> depth;        // by offset()
-  std::vector<std::uint32_t> ids;  // record that won the sample
+  int left = 0, top = 0;             ///< of the tile in the window, pixels
+  int width = 0, height = 0;         ///< less at the window's edges
+  std::size_t strip = 0;             ///< pixels from strip to strip, padding included
+  std::size_t plane = 0;             ///< pixels with those of the padding
+  AlignedVector<float> depth;        // by offset()
+  AlignedVector<std::uint32_t> ids;  // record that won the sample
   // At pixel centres, of the record that won a sample of the pixel last: where all samples show the same record, of
-  // that one. Normal · q, and depth where no sample lies at the centre.
+  // that one. Normal · q; with several samples, none of which lies there, normal · q and depth side by side.
   std::array<std::vector<float>, 3> normal;
-  std::vector<float> centerDepth;
-  std::vector<Record> records;   // the first recordCount
-  std::vector<Corners> corners;  // of records, in drawing order; only with several samples
+  AlignedVector<float> centers;
+  std::vector<Record> records;           // the first recordCount
+  std::vector<CenterEdges> centerEdges;  // of records; only with several samples
   std::uint32_t recordCount = 0;
   std::vector<Attributes> attributes;
   std::vector<Surface> surfaces;            // of the tile's clusters
@@ -152,6 +186,12 @@ class Tile {
   StageClock clock;  // runs while the tile is drawn; stages lap their parts of `statistics`
 
  private:
+  // Samples are cleared when first needed, by cells: bit column + 8 · row of `touched_`.
+  static constexpr int kCellHeight = 8, kCellRows = 8;
+  static constexpr std::uint64_t kFirstCells = 0x0101010101010101U;  // of all rows
+  void clear(std::uint64_t cells);
+  std::uint64_t touched_ = 0;
+
   // To at least `count` elements, and to all that there is room for.
   template <class T>
   static void grow(std::vector<T>& vector, std::size_t count) {
@@ -164,10 +204,8 @@ class Tile {
 /// Planes of texture coordinates, colours and tangents of a record; made when first asked for.
 const Attributes& attributesOf(Tile& tile, Record& record);
 
-/// Rows are this much longer than tiles are wide: the longest vector.
-inline constexpr int kRowPadding = 16;
-/// Planes of samples are this much longer than their rows, so that a pixel's samples do not share a set of the cache.
-inline constexpr std::size_t kPlanePadding = 80;
+/// Strips are this much longer than their rows, so that what belongs to neighbours shares no set of the cache.
+inline constexpr std::size_t kStripPadding = 80;
 
 /// Depth and triangle of every sample of the tile.
 void resolveVisibility(Tile& tile);

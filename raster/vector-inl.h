@@ -1,4 +1,4 @@
-// The vector types of the kernels: at most 16 lanes, so that rows need no more padding than kRowPadding.
+// The vector types of the kernels: at most 16 lanes, a row of a tile's strip.
 #if defined(LIMN_RASTER_VECTOR_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef LIMN_RASTER_VECTOR_INL_H_
 #undef LIMN_RASTER_VECTOR_INL_H_
@@ -51,9 +51,23 @@ HWY_INLINE void forEach(std::index_sequence<kIndices...> /*indices*/, const Body
 
 /// Bit i: lane i is set.
 HWY_INLINE unsigned bitsOf(MI lanes) {
+#if HWY_TARGET <= HWY_AVX3
+  return lanes.raw;
+#else
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(I(), lanes, bits);
   return bits[0] | (static_cast<unsigned>(bits[1]) << 8U);
+#endif
+}
+
+/// Lane i: bit i is set.
+HWY_INLINE MI lanesOf(unsigned lanes) {
+#if HWY_TARGET <= HWY_AVX3
+  return MI{static_cast<__mmask16>(lanes)};
+#else
+  const std::uint8_t bits[8] = {static_cast<std::uint8_t>(lanes), static_cast<std::uint8_t>(lanes >> 8U)};
+  return hn::LoadMaskBits(I(), bits);
+#endif
 }
 #endif
 

@@ -33,6 +33,7 @@ void drawTriangle(Tile& tile, TriangleSetup& t) {
   const Surface surface = tile.surfaceOf(t.record);
   const bool masked = surface.material->alphaMode == AlphaMode::kMask;
   if (isFirstTile(tile, t.corners)) ++tile.statistics.trianglesDrawn;
+  tile.touch(t.x0, t.y0, t.x1, t.y1);
   std::uint32_t id = kNoRecord;  // only triangles that win a sample get a record
   for (int y = t.y0; y < t.y1; ++y)
     for (int x = t.x0; x < t.x1; ++x) {

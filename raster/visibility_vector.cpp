@@ -13,6 +13,7 @@
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 #include "raster/micro-inl.h"
+#include "raster/multisample-inl.h"
 #include "raster/rows-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -24,6 +25,7 @@ void resolveVisibilityVector(Tile& tile) {
   resolveVisibility(tile);
 }
 #else
+constexpr std::int32_t kMaxTile = 128;
 constexpr std::int32_t kSmall = (1 << 15) - 1024;  // edge functions of smaller boxes fit 32 bits
 
 // Values of a cluster's vertices by their numbers.
@@ -60,7 +62,8 @@ class Lookup {
 
 class Visibility {
  public:
-  explicit Visibility(Tile& tile) : tile_(tile), context_(*tile.context), micro_(tile), rows_(tile) {}
+  explicit Visibility(Tile& tile)
+      : tile_(tile), context_(*tile.context), micro_(tile), rows_(tile), multisample_(tile) {}
 
   void cluster(std::uint32_t entry) {
     const VisibleCluster& visible = context_.front.cluster(tile_.clusters[entry]);
@@ -74,10 +77,15 @@ class Visibility {
     if (material.alphaMode == AlphaMode::kMask) return drawClusterScalar(tile_, entry);
     tile_.reserveRecords(kClusterTriangles);
     microQueue_.count = rowQueue_.count = longCount_ = 0;
+    minX_ = minY_ = hn::Set(I(), kMaxTile), maxX_ = maxY_ = hn::Set(I(), -1);
     for (std::size_t t = 0; t < cluster.triangleCount; t += kLanes) sort(t, material.doubleSided);
+    touchQueued();
     tile_.clock.lap(tile_.statistics.setupMs);
     micro_.draw(cluster_, microQueue_);
-    rows_.draw(cluster_, rowQueue_);
+    if (tile_.hasSeveralSamples())
+      multisample_.draw(cluster_, rowQueue_);
+    else
+      rows_.draw(cluster_, rowQueue_);
     for (std::size_t i = 0; i < longCount_; ++i) drawLong(long_[i]);
   }
 
@@ -91,8 +99,7 @@ class Visibility {
     countFirst(setup.corners);
     tile_.reserveRecords(1);
     tile_.records[tile_.recordCount] = setup.record;
-    if (tile_.keepsCorners()) tile_.corners[tile_.recordCount] = setup.corners;
-    rows_.draw(setup.corners, setup.x0, setup.y0, setup.x1, setup.y1);
+    drawAlone(setup.corners, setup.x0, setup.y0, setup.x1, setup.y1);
   }
 
  private:
@@ -134,7 +141,14 @@ class Visibility {
                                atLeast(hn::Max(y.begin, hn::Zero(d)), hn::Set(d, tile_.top)));
     tile_.statistics.trianglesDrawn += hn::CountTrue(d, hn::And(live, isFirst));
 
-    VI tag = hn::Iota(d, static_cast<std::int32_t>(t));
+    const VI left = hn::Set(d, tile_.left), top = hn::Set(d, tile_.top);
+    const auto where = [&](VI v, VI other) HWY_ATTR { return hn::IfThenElse(live, v, other); };
+    minX_ = hn::Min(minX_, where(hn::Sub(x.first, left), minX_)),
+    maxX_ = hn::Max(maxX_, where(hn::Sub(x.last, left), maxX_));
+    minY_ = hn::Min(minY_, where(hn::Sub(y.first, top), minY_)),
+    maxY_ = hn::Max(maxY_, where(hn::Sub(y.last, top), maxY_));
+
+    VI tag = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(t)));
     tag = hn::Or(tag, hn::And(hn::VecFromMask(d, negative), hn::Set(d, kSwapped)));
     tag = hn::Or(tag, hn::And(hn::VecFromMask(d, back), hn::Set(d, kBack)));
     const MI sliver = hn::And(slivers(area, ux, uy, vx, vy), live);
@@ -172,6 +186,14 @@ class Visibility {
     enqueue(microQueue_, micro);
   }
 
+  HWY_INLINE void touchQueued() {
+    const I d;
+    const std::int32_t last = hn::GetLane(hn::MaxOfLanes(d, maxX_));
+    if (last < 0) return;
+    tile_.touch(hn::GetLane(hn::MinOfLanes(d, minX_)), hn::GetLane(hn::MinOfLanes(d, minY_)), last + 1,
+                hn::GetLane(hn::MaxOfLanes(d, maxY_)) + 1);
+  }
+
   // PlaneBasis::setSliver's condition, or nearly so: what it holds for is left to that.
   HWY_INLINE static MI slivers(VI area, VI ux, VI uy, VI vx, VI vy) {
     const I d;
@@ -188,9 +210,7 @@ class Visibility {
     const I d;
     if (cluster_.batch->isStream || cluster_.batch->draw->replaced.empty()) return hn::FirstN(d, kLanes);
     const std::uint32_t replaced = cluster_.batch->replacedFrom(static_cast<std::uint32_t>(first));
-    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(replaced),
-                                  static_cast<std::uint8_t>(replaced >> 8U)};
-    return hn::Not(hn::LoadMaskBits(d, bits));
+    return hn::Not(lanesOf(replaced));
   }
 
   void sortLarge(std::size_t t, MI lanes, bool doubleSided) {
@@ -222,7 +242,6 @@ class Visibility {
     const PlaneBasis basis(c);
     tile_.reserveRecords(1);
     cluster_.setRecord(tag, basis.x1, basis.x2, basis.y1, basis.y2, tile_.records[tile_.recordCount]);
-    if (tile_.keepsCorners()) tile_.corners[tile_.recordCount] = c;
     const int bias = kSubpixels - 1 - tile_.sampleRange.high, low = tile_.sampleRange.low;
     const int x0 = std::max(((std::min({c.x[0], c.x[1], c.x[2]}) + bias) >> kSubpixelBits) - tile_.left, 0);
     const int y0 = std::max(((std::min({c.y[0], c.y[1], c.y[2]}) + bias) >> kSubpixelBits) - tile_.top, 0);
@@ -230,7 +249,16 @@ class Visibility {
         std::min(((std::max({c.x[0], c.x[1], c.x[2]}) - low) >> kSubpixelBits) - tile_.left + 1, tile_.width);
     const int y1 =
         std::min(((std::max({c.y[0], c.y[1], c.y[2]}) - low) >> kSubpixelBits) - tile_.top + 1, tile_.height);
-    rows_.draw(c, x0, y0, x1, y1);
+    drawAlone(c, x0, y0, x1, y1);
+  }
+
+  // Draws the record that is next to be kept.
+  void drawAlone(const Corners& c, int x0, int y0, int x1, int y1) {
+    tile_.touch(x0, y0, x1, y1);
+    if (tile_.hasSeveralSamples())
+      multisample_.draw(c, x0, y0, x1, y1);
+    else
+      rows_.draw(c, x0, y0, x1, y1);
   }
 
   Tile& tile_;
@@ -238,8 +266,10 @@ class Visibility {
   ClusterInTile cluster_;
   Micro micro_;
   Rows rows_;
+  Multisample multisample_;
   MicroQueue microQueue_;
   TriangleQueue rowQueue_;
+  VI minX_, minY_, maxX_, maxY_;  // of the pixels of queued triangles
   std::uint32_t long_[kClusterTriangles];
   std::size_t longCount_ = 0;
 };

@@ -4,8 +4,26 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <new>
+#include <vector>
 
 namespace limn {
+
+/// Memory at the beginning of a cache line, which is also what the longest vectors want.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kAlignment{64};
+
+  CacheLineAllocator() = default;
+  template <class U>
+  explicit CacheLineAllocator(const CacheLineAllocator<U>& /*other*/) {}
+  T* allocate(std::size_t count) { return static_cast<T*>(::operator new(count * sizeof(T), kAlignment)); }
+  void deallocate(T* memory, std::size_t /*count*/) { ::operator delete(memory, kAlignment); }
+  bool operator==(const CacheLineAllocator& /*other*/) const { return true; }
+};
+template <class T>
+using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
 /// Gives a vector of every slot the capacity of the largest of them, for each of `vectors` (pointers to members, or
 /// functions from slot to vector). Which thread works on what differs from frame to frame; after this a frame like the
