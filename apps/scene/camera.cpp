@@ -14,7 +14,9 @@
 namespace limn::scene {
 namespace {
 
-constexpr double kLargestCoordinate = 1e15;
+/// A scene may reach to 1e15, and the eye that frames it stands a few times or, with a narrow field of view, hundreds of
+/// times farther away. Squares of such numbers are floats still.
+constexpr double kLargestCoordinate = 1e18;
 constexpr double kSmallestRadius = 1e-30;  // below it single-precision depths would vanish
 /// Edge curves leave the coarse mesh by at most half its bounding radius (cubic control points lie within a
 /// third of an edge from their chord), so this much around its centre is never clipped.
@@ -94,7 +96,8 @@ LookAt frameSphere(const Sphere& bounds, int width, int height, double azimuthDe
   requireWindow(width, height);
   require(isLegal(azimuthDegrees) && isLegal(elevationDegrees), "azimuth and elevation must be finite");
   require(zoom > 0.0 && isLegal(zoom), "zoom must be a finite number above 0");
-  require(isLegal(orthoHeight) && isLegal(bounds.center) && isLegal(bounds.radius), "numbers must be finite");
+  require(isLegal(orthoHeight), "the orthographic height must be finite");
+  require(isLegal(bounds.center) && isLegal(bounds.radius), "the scene must not reach farther than 1e18");
 
   const double radius = usableRadius(bounds);
   const double tangentOfHalf = halfTangent(fovDegrees);
@@ -120,7 +123,7 @@ LookAt frameSphere(const Sphere& bounds, int width, int height, double azimuthDe
 
 CameraView makeCamera(const LookAt& lookAt, const Sphere& bounds, int width, int height) {
   require(isLegal(lookAt.eye) && isLegal(lookAt.target) && isLegal(lookAt.up),
-          "camera coordinates must be finite and at most 1e15");
+          "camera coordinates must be finite and at most 1e18");
   require(isLegal(lookAt.orthoHeight) && lookAt.orthoHeight >= 0.0,
           "the orthographic height must be finite and not negative");
   const glm::dvec3 backwards = lookAt.eye - lookAt.target;
@@ -148,7 +151,7 @@ CameraView makeCamera(const LookAt& lookAt, const Sphere& bounds, int width, int
 CameraView makeCamera(const Camera& camera, const glm::dmat4& nodeToWorld, const Sphere& bounds, int width,
                       int height) {
   const glm::dvec3 eye(nodeToWorld[3]);
-  require(isLegal(eye), "the camera's position must be finite and at most 1e15");
+  require(isLegal(eye), "the camera's position must be finite and at most 1e18");
   const double backLength = glm::length(glm::dvec3(nodeToWorld[2]));
   require(backLength > 0.0, "the camera's node has no direction: its scale is zero");
   const glm::dvec3 back = glm::dvec3(nodeToWorld[2]) / backLength;

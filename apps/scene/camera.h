@@ -38,7 +38,7 @@ LookAt frameSphere(const Sphere& bounds, int width, int height, double azimuthDe
 /// Matrices for a window. Near and far planes enclose `bounds`, half its radius to spare on either side
 /// because curved surfaces rise above their coarse mesh (near at least 1/4096 of far where the eye is
 /// inside). Throws std::invalid_argument for eye = target, up along the line of sight, a field of view
-/// outside (0, 180), sizes outside 1 … 16384, or numbers that are not finite or beyond 1e15.
+/// outside (0, 180), sizes outside 1 … 16384, or numbers that are not finite or beyond 1e18.
 CameraView makeCamera(const LookAt& lookAt, const Sphere& bounds, int width, int height);
 
 /// The same from a camera of the file at `nodeToWorld`, whose scale and shear have no effect. Pixels are
