@@ -16,7 +16,7 @@ struct VertexAttributes {
 
 // Of a vertex of the draw: the geometry's, or the stream's beyond them.
 VertexAttributes rawAttributes(const Draw& draw, std::uint32_t vertex) {
-  const Geometry::Data& g = draw.geometry->data();
+  const Vertices& g = draw.geometry->data().vertices;
   VertexAttributes a;
   if (vertex < g.positions.size()) {
     if (!g.texcoords.empty()) a.texcoord = g.texcoords[vertex];

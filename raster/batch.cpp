@@ -66,9 +66,8 @@ class DrawnVertices {
  public:
   explicit DrawnVertices(const Draw& draw)
       : count_(draw.geometry->vertexCount()),
-        positions_(draw.posedPositions.empty() ? draw.geometry->data().positions.data()
-                                               : draw.posedPositions.data()),
-        normals_(draw.posedNormals.empty() ? draw.geometry->data().normals.data() : draw.posedNormals.data()),
+        positions_(orElse(draw.posedPositions, draw.geometry->data().vertices.positions)),
+        normals_(orElse(draw.posedNormals, draw.geometry->data().vertices.normals)),
         stream_(draw.stream.vertices) {}
 
   /// The points of a set's vertices [begin, end).
@@ -88,6 +87,10 @@ class DrawnVertices {
   }
 
  private:
+  static const glm::vec3* orElse(std::span<const glm::vec3> posed, std::span<const glm::vec3> otherwise) {
+    return posed.empty() ? otherwise.data() : posed.data();
+  }
+
   std::size_t count_;
   const glm::vec3 *positions_, *normals_;
   const Vertices& stream_;
@@ -107,8 +110,7 @@ void cutStream(const Draw& draw, std::size_t first, std::size_t last, VertexNumb
                                                     sources.begin() + static_cast<std::ptrdiff_t>(last),
                                                     behind) -
                                    sources.begin());
-    cutter.add(draw.stream.indices.subspan(3 * t, 3 * (end - t)), static_cast<std::uint32_t>(t),
-               geometry.parts[part].material);
+    cutter.add(draw.stream.indices.subspan(3 * t, 3 * (end - t)), geometry.parts[part].material);
   }
   cutter.finish();
   set.points.resize(set.vertices.size());
@@ -122,7 +124,7 @@ void cutStream(const Draw& draw, std::size_t first, std::size_t last, VertexNumb
 std::uint64_t Batch::order(std::uint32_t triangleOfSet) const {
   // Within a draw: the geometry's triangles first, then the stream's.
   const std::uint64_t within =
-      set->triangles[triangleOfSet] + (isStream ? draw->geometry->triangleCount() : 0);
+      (isStream ? draw->geometry->triangleCount() : 0) + firstTriangle + triangleOfSet;
   return (static_cast<std::uint64_t>(drawIndex) << 32) | within;
 }
 

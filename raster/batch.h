@@ -19,7 +19,7 @@ struct Batch {
   const Draw* draw = nullptr;
   std::size_t firstCluster = 0;  ///< clusters of the batches before
   std::uint32_t drawIndex = 0;
-  std::uint32_t firstTriangle = 0;  ///< stream: number of the batch's first triangle in the draw's stream
+  std::uint32_t firstTriangle = 0;  ///< number of the batch's first triangle in the draw's geometry or stream
   std::size_t streamSet = 0;        ///< stream: which of the builder's sets
   bool isStream = false;
   bool mirrored = false;  ///< front faces run clockwise
@@ -33,8 +33,7 @@ struct Batch {
   std::uint64_t order(std::uint32_t triangleOfSet) const;
   /// The geometry's triangle that a triangle is, or replaces.
   std::uint32_t source(std::uint32_t triangleOfSet) const {
-    const std::uint32_t t = set->triangles[triangleOfSet];
-    return isStream ? draw->stream.sourceTriangles[t] : t;
+    return isStream ? draw->stream.sourceTriangles[firstTriangle + triangleOfSet] : triangleOfSet;
   }
   // A geometry's clusters hold its triangles in the order of submission, so numbers in the set are those of `replaced`.
 

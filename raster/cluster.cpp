@@ -27,8 +27,7 @@ void ClusterVertices::set(std::size_t i, const glm::vec3& position, const glm::v
 
 std::size_t ClusterSet::memoryBytes() const {
   return clusters.capacity() * sizeof(Cluster) + vertices.capacity() * sizeof vertices[0] +
-         3 * corners[0].capacity() + triangles.capacity() * sizeof triangles[0] + points.memoryBytes() +
-         bounds.capacity() * sizeof(ClusterBounds);
+         3 * corners[0].capacity() + points.memoryBytes() + bounds.capacity() * sizeof(ClusterBounds);
 }
 
 bool ClusterSet::isConsistent() const {
@@ -43,7 +42,7 @@ bool ClusterSet::isConsistent() const {
       for (const auto& corner : corners)
         if (corner[t] >= c.vertexCount) return false;
   }
-  return nextVertex == vertices.size() && nextTriangle == triangles.size();
+  return nextVertex == vertices.size() && nextTriangle + kPadding == corners[0].size();
 }
 
 void VertexNumbers::beginCluster() {
@@ -55,7 +54,6 @@ void VertexNumbers::beginCluster() {
 ClusterCutter::ClusterCutter(ClusterSet& set, std::size_t triangles, VertexNumbers& numbers)
     : set_(set), numbers_(numbers) {
   set.clusters.clear();
-  set.triangles.resize(triangles);
   for (auto& corner : set.corners) corner.resize(triangles + kPadding);
 }
 
@@ -83,26 +81,23 @@ void ClusterCutter::begin(std::uint32_t material) {
   if (set_.vertices.size() < wanted) set_.vertices.resize(std::max(wanted, set_.vertices.capacity()));
 }
 
-void ClusterCutter::add(std::span<const std::uint32_t> indices, std::uint32_t triangle,
-                        std::uint32_t material) {
+void ClusterCutter::add(std::span<const std::uint32_t> indices, std::uint32_t material) {
   for (std::size_t i = 0; i < indices.size();) {
     if (!hasRoomFor(&indices[i], material)) begin(material);
     // So many fit whatever vertices they have, and one does at least.
     const std::uint32_t room = static_cast<std::uint32_t>(kClusterVertices - cluster_.vertexCount) / 3U;
     const std::uint32_t count = std::min(std::max(room, 1U), kClusterTriangles - cluster_.triangleCount + 0U);
     const auto left = static_cast<std::uint32_t>((indices.size() - i) / 3);
-    fill(&indices[i], std::min(count, left), triangle);
-    triangle += std::min(count, left);
+    fill(&indices[i], std::min(count, left));
     i += 3 * std::size_t{std::min(count, left)};
   }
 }
 
 // Adds triangles that fit.
-void ClusterCutter::fill(const std::uint32_t* corners, std::uint32_t count, std::uint32_t triangle) {
+void ClusterCutter::fill(const std::uint32_t* corners, std::uint32_t count) {
   // All in locals: bytes are stored, which may alias any member.
   const VertexNumbers::Words words = numbers_.words();
   std::uint32_t* vertices = &set_.vertices[cluster_.firstVertex];
-  std::uint32_t* triangles = &set_.triangles[next_];
   std::uint8_t* numbers[3] = {&set_.corners[0][next_], &set_.corners[1][next_], &set_.corners[2][next_]};
   std::uint32_t fresh = cluster_.vertexCount;
   for (std::uint32_t t = 0; t < count; ++t, corners += 3) {
@@ -112,7 +107,6 @@ void ClusterCutter::fill(const std::uint32_t* corners, std::uint32_t count, std:
       numbers[k][t] = static_cast<std::uint8_t>(number);
       fresh += number == fresh ? 1U : 0U;
     }
-    triangles[t] = triangle + t;
   }
   cluster_.vertexCount = static_cast<std::uint16_t>(fresh);
   cluster_.triangleCount = static_cast<std::uint16_t>(cluster_.triangleCount + count);

@@ -20,8 +20,9 @@ inline constexpr int kClusterVertices = 64;
 inline constexpr int kClusterTriangles = 128;
 
 struct Cluster {
-  std::uint32_t firstVertex = 0;    ///< into ClusterSet::vertices
-  std::uint32_t firstTriangle = 0;  ///< into ClusterSet::triangles and corners
+  std::uint32_t firstVertex = 0;  ///< into ClusterSet::vertices
+  std::uint32_t firstTriangle =
+      0;  ///< into ClusterSet::corners: the set's triangles are in the order of submission
   std::uint16_t vertexCount = 0;    ///< 1 … kClusterVertices
   std::uint16_t triangleCount = 0;  ///< 1 … kClusterTriangles
   std::uint32_t material = 0;
@@ -48,7 +49,6 @@ struct ClusterSet {
   std::vector<Cluster> clusters;
   std::vector<std::uint32_t> vertices;               ///< per cluster vertex: the vertex of the mesh
   std::array<std::vector<std::uint8_t>, 3> corners;  ///< per triangle: vertices of its cluster
-  std::vector<std::uint32_t> triangles;              ///< per triangle: its number in the order of submission
   ClusterVertices points;
   std::vector<ClusterBounds> bounds;
 
@@ -99,8 +99,8 @@ class ClusterCutter {
  public:
   /// Empties the set; its memory stays. `triangles` are going to be added, of vertices that `numbers` has room for.
   ClusterCutter(ClusterSet& set, std::size_t triangles, VertexNumbers& numbers);
-  /// Triangles of three `indices` each, numbered from `triangle` in the order of submission.
-  void add(std::span<const std::uint32_t> indices, std::uint32_t triangle, std::uint32_t material);
+  /// Triangles of three `indices` each, the next ones in the order of submission.
+  void add(std::span<const std::uint32_t> indices, std::uint32_t material);
   /// After the last triangle: the set is complete.
   void finish();
 
@@ -108,7 +108,7 @@ class ClusterCutter {
   std::uint32_t freshOf(const std::uint32_t* corners) const;
   bool hasRoomFor(const std::uint32_t* corners, std::uint32_t material) const;
   void begin(std::uint32_t material);
-  void fill(const std::uint32_t* corners, std::uint32_t count, std::uint32_t triangle);
+  void fill(const std::uint32_t* corners, std::uint32_t count);
 
   ClusterSet& set_;
   VertexNumbers& numbers_;
@@ -123,9 +123,12 @@ ClusterBounds boundTriangles(const ClusterSet& set, const Cluster& cluster);
 
 /// The mesh as Geometry keeps it.
 struct Geometry::Data {
-  std::vector<glm::vec3> positions, normals;
-  std::vector<glm::vec2> texcoords;
-  std::vector<glm::vec4> colors, tangents;
+  Vertices vertices;  ///< the caller's, or `copies`
+  struct {
+    std::vector<glm::vec3> positions, normals;
+    std::vector<glm::vec2> texcoords;
+    std::vector<glm::vec4> colors, tangents;
+  } copies;
   std::vector<Part> parts;
   std::vector<std::uint32_t> partOfTriangle;  ///< empty where there is one part
   std::size_t triangleCount = 0;

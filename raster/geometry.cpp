@@ -34,15 +34,22 @@ void requireValid(const Vertices& v, std::span<const std::uint32_t> indices, std
 }  // namespace
 
 Geometry::Geometry(const Vertices& vertices, std::span<const std::uint32_t> indices,
-                   std::span<const Part> parts) {
+                   std::span<const Part> parts, Keep keep) {
   requireValid(vertices, indices, parts);
   data_ = std::make_unique<Data>();
   Data& d = *data_;
-  d.positions.assign(vertices.positions.begin(), vertices.positions.end());
-  d.normals.assign(vertices.normals.begin(), vertices.normals.end());
-  d.texcoords.assign(vertices.texcoords.begin(), vertices.texcoords.end());
-  d.colors.assign(vertices.colors.begin(), vertices.colors.end());
-  d.tangents.assign(vertices.tangents.begin(), vertices.tangents.end());
+  d.vertices = vertices;
+  if (keep == Keep::kCopies) {
+    const auto copy = [](auto& span, auto& vector) {
+      vector.assign(span.begin(), span.end());
+      span = vector;
+    };
+    copy(d.vertices.positions, d.copies.positions);
+    copy(d.vertices.normals, d.copies.normals);
+    copy(d.vertices.texcoords, d.copies.texcoords);
+    copy(d.vertices.colors, d.copies.colors);
+    copy(d.vertices.tangents, d.copies.tangents);
+  }
   d.parts.assign(parts.begin(), parts.end());
   d.triangleCount = indices.size() / 3;
   if (parts.size() > 1)
@@ -50,16 +57,18 @@ Geometry::Geometry(const Vertices& vertices, std::span<const std::uint32_t> indi
       d.partOfTriangle.insert(d.partOfTriangle.end(), parts[i].triangleCount, i);
 
   VertexNumbers numbers;
-  numbers.reserve(d.positions.size());
+  numbers.reserve(vertices.positions.size());
   ClusterCutter cutter(d.set, d.triangleCount,
                        numbers);  // in the order of submission, as Batch::isReplaced wants it
   for (const Part& part : parts)
-    cutter.add(indices.subspan(3UL * part.firstTriangle, 3UL * part.triangleCount), part.firstTriangle,
-               part.material);
+    cutter.add(indices.subspan(3UL * part.firstTriangle, 3UL * part.triangleCount), part.material);
   cutter.finish();
+  d.set.vertices.shrink_to_fit();
+  d.set.clusters.shrink_to_fit();
   d.set.points.resize(d.set.vertices.size());
   for (std::size_t i = 0; i < d.set.vertices.size(); ++i)
-    d.set.points.set(i, d.positions[d.set.vertices[i]], d.normals[d.set.vertices[i]]);
+    d.set.points.set(i, vertices.positions[d.set.vertices[i]], vertices.normals[d.set.vertices[i]]);
+  d.set.bounds.reserve(d.set.clusters.size());
   for (const Cluster& cluster : d.set.clusters) d.set.bounds.push_back(boundTriangles(d.set, cluster));
   LIMN_ASSERT(d.set.isConsistent(), d.set.clusters.size());
 }
@@ -72,13 +81,14 @@ std::size_t Geometry::triangleCount() const {
   return data_->triangleCount;
 }
 std::size_t Geometry::vertexCount() const {
-  return data_->positions.size();
+  return data_->vertices.positions.size();
 }
 std::size_t Geometry::memoryBytes() const {
   const Data& d = *data_;
-  return d.positions.capacity() * sizeof(glm::vec3) + d.normals.capacity() * sizeof(glm::vec3) +
-         d.texcoords.capacity() * sizeof(glm::vec2) + d.colors.capacity() * sizeof(glm::vec4) +
-         d.tangents.capacity() * sizeof(glm::vec4) + d.partOfTriangle.capacity() * sizeof(std::uint32_t) +
+  const auto& c = d.copies;
+  return c.positions.capacity() * sizeof(glm::vec3) + c.normals.capacity() * sizeof(glm::vec3) +
+         c.texcoords.capacity() * sizeof(glm::vec2) + c.colors.capacity() * sizeof(glm::vec4) +
+         c.tangents.capacity() * sizeof(glm::vec4) + d.partOfTriangle.capacity() * sizeof(std::uint32_t) +
          d.set.memoryBytes();
 }
 

@@ -45,12 +45,16 @@ struct Part {
 };
 
 /// The part of a mesh that does not change from frame to frame, prepared for drawing: cut into clusters with
-/// their normal cones and bounds. Keeps copies, the arrays may go.
+/// their normal cones and bounds. Unless told to borrow the vertices, it keeps copies, and the arrays may go.
 class Geometry {
  public:
+  /// What becomes of the vertices' arrays: they are copied, or must outlive the geometry.
+  enum class Keep { kCopies, kReferences };
+
   /// `indices`: three per triangle, each below vertices.positions.size(). `parts` must tile [0, triangles) in
   /// order. Throws std::invalid_argument for anything else.
-  Geometry(const Vertices& vertices, std::span<const std::uint32_t> indices, std::span<const Part> parts);
+  Geometry(const Vertices& vertices, std::span<const std::uint32_t> indices, std::span<const Part> parts,
+           Keep keep = Keep::kCopies);
   ~Geometry();
   Geometry(Geometry&&) noexcept;
   Geometry& operator=(Geometry&&) noexcept;

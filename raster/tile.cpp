@@ -74,7 +74,8 @@ void Tile::clear(std::uint64_t cells) {
 Surface Tile::surfaceOf(std::uint32_t b, std::uint32_t cluster) const {
   const Batch& batch = context->batches[b];
   const Draw& draw = *batch.draw;
-  const bool hasColors = !draw.geometry->data().colors.empty() || !draw.stream.vertices.colors.empty();
+  const bool hasColors =
+      !draw.geometry->data().vertices.colors.empty() || !draw.stream.vertices.colors.empty();
   return {&batch, &context->frame.materials[batch.set->clusters[cluster].material], hasColors};
 }
 

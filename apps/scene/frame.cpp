@@ -42,10 +42,11 @@ struct MeshResources {
   raster::Geometry geometry;
   std::unique_ptr<Smoothing> smoothing;
 
+  /// Borrows the mesh's arrays.
   explicit MeshResources(const Mesh& mesh)
       : shape{mesh.positions, mesh.normals, mesh.indices},
         geometry({mesh.positions, mesh.normals, mesh.texcoords, mesh.colors, mesh.tangents}, mesh.indices,
-                 mesh.parts) {}
+                 mesh.parts, raster::Geometry::Keep::kReferences) {}
 };
 
 /// What an instance keeps from frame to frame: its stream, and arrays of its own where it does not merely
