@@ -17,7 +17,8 @@ namespace {
 /// A scene may reach to 1e15, and the eye that frames it stands a few times or, with a narrow field of view, hundreds of
 /// times farther away. Squares of such numbers are floats still.
 constexpr double kLargestCoordinate = 1e18;
-constexpr double kSmallestRadius = 1e-30;  // below it single-precision depths would vanish
+constexpr double kSmallestRadius =
+    1e-15;  // below it a scene is framed as a point: squares of 1/depth would overflow
 /// Edge curves leave the coarse mesh by at most half its bounding radius (cubic control points lie within a
 /// third of an edge from their chord), so this much around its centre is never clipped.
 constexpr double kDepthSlack = 1.5;

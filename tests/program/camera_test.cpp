@@ -106,13 +106,16 @@ TEST(FrameSphere, APointIsFramedToo) {
   EXPECT_LT(view.projection.nearPlane, view.projection.farPlane);
 }
 
-TEST(FrameSphere, TheLargestScenesAreFramedLikeAnyOther) {
-  const Sphere unit{{0, 0, 0}, 1.0}, largest{{0, 0, 0}, 1.8e15};  // corners at 1e15 in all three directions
+TEST(FrameSphere, TheLargestAndSmallestScenesAreFramedLikeAnyOther) {
+  const Sphere unit{{0, 0, 0}, 1.0};
+  const Sphere largest{{0, 0, 0}, 1.8e15};  // corners at 1e15 in all three directions
+  const Sphere smallest{{0, 0, 0}, 1e-15};
   const auto outline = [](const Sphere& sphere) {
     return outlineRadius(makeCamera(frameSphere(sphere, 400, 300, 30, 20, 1, 30, 0), sphere, 400, 300),
                          sphere);
   };
-  EXPECT_NEAR(outline(largest), outline(unit), 1e-6 * outline(unit));
+  for (const Sphere& sphere : {largest, smallest})
+    EXPECT_NEAR(outline(sphere), outline(unit), 1e-6 * outline(unit));
 }
 
 TEST(MakeCamera, VerticalFieldOfViewAndOrthographicHeightFillTheWindow) {
