@@ -433,6 +433,7 @@ class BlendedPatches final : public MethodState {
 
   void deform(const Mesh& mesh) override {
     mesh_ = mesh;
+    isRigid_ = false;
     prepared_ = false;
   }
 
@@ -447,6 +448,7 @@ class BlendedPatches final : public MethodState {
       computeEdgeCurves(mesh_, topology_, style, crew, robust_, curves_);
     else
       placeFittedCurves(crew);
+    if (isRigid_) robust_ = {};  // not asked again
     if (clusters_.count() == 0) clusters_.build(mesh_, topology_);
     clusters_.update(mesh_, topology_, test_, curves_, centers_, whereFitted(parameters), crew);
     style_ = style;
@@ -534,7 +536,7 @@ class BlendedPatches final : public MethodState {
   CurveStyle style_;
   float wedgeDegrees_ = 0, beta_ = 0;
   std::array<bool, 2> always_{};  // features, boundaries
-  bool prepared_ = false;
+  bool prepared_ = false, isRigid_ = true;
 };
 
 }  // namespace

@@ -96,6 +96,7 @@ void EdgeClusters::build(const Mesh& mesh, const Topology& topology) {
     cluster.paddedCount = (cluster.vertexCount + kLongestVector - 1) / kLongestVector * kLongestVector;
     vertices_.resize(cluster.firstVertex + cluster.paddedCount, own.back());
   }
+  vertices_.shrink_to_fit();
 }
 
 void EdgeClusters::update(const Mesh& mesh, const Topology& topology, const EdgeTest& test,
