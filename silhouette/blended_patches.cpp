@@ -211,8 +211,8 @@ void Pass::describe(std::size_t cluster, std::uint32_t record, CurveBatch& batch
 }
 
 void Pass::setSegments(const CurveBatch& batch, std::uint32_t record) {
-  std::array<float, CurveBatch::kCapacity> errors;
-  if (parameters.segments == 0) chordErrors(bound, batch, errors.data());
+  CurveErrors errors;
+  if (parameters.segments == 0) curveErrors(bound, batch, errors);
   std::size_t cappedEdges = 0;
   for (std::size_t i = 0; i < batch.count; ++i) {
     bool capped = false;
@@ -297,7 +297,8 @@ Pattern Pass::patternOf(std::size_t triangle, const Records& records) const {
   }
   bool capped = false;  // the cap of the sides is what is reported
   const float tolerance = parameters.tolerance * (centers.empty() ? 1.0f : kFittedInside);
-  pattern.steps = std::max(3u, static_cast<std::uint32_t>(segmentsFor(3.0f * largest, tolerance, capped)));
+  pattern.steps = std::max(
+      3u, static_cast<std::uint32_t>(segmentsFor({3.0f * largest, 3.0f * largest}, tolerance, capped)));
   return pattern;
 }
 

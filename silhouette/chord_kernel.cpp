@@ -43,45 +43,59 @@ V squareInPlane(const V& x, const V& y) {
   return hn::Add(hn::Mul(x, x), hn::Mul(y, y));
 }
 
-// PixelBound::chordError, step by step.
-V chordError(const PixelMap& map, const Vector& p, const Vector& q, const Vector& offset0,
-             const Vector& offset1) {
+// The squares of PixelBound::curveError.
+struct Squares {
+  V bend, middle, turn;
+
+  void widen(const V& x1, const V& y1, const V& x2, const V& y2) {
+    const V half = hn::Set(Tag(), 0.5f);
+    bend = hn::Max(bend, hn::Max(squareInPlane(x1, y1), squareInPlane(x2, y2)));
+    middle = hn::Max(middle, squareInPlane(hn::Mul(half, hn::Add(x1, x2)), hn::Mul(half, hn::Add(y1, y2))));
+    turn = hn::Max(turn, squareInPlane(hn::Sub(x2, x1), hn::Sub(y2, y1)));
+  }
+};
+
+// PixelBound::curveError of one vector of curves, step by step.
+void errorsAt(const PixelMap& map, const CurveBatch& curves, std::size_t i, CurveErrors& errors) {
   const Tag tag;
-  const V two = hn::Set(tag, 2.0f), three = hn::Set(tag, 3.0f), factor = hn::Set(tag, PixelMap::kChordFactor);
-  const Vector d0 = apply(map.linear, offset0), d1 = apply(map.linear, offset1);
+  const V two = hn::Set(tag, 2.0f), three = hn::Set(tag, 3.0f);
+  const Vector d0 = apply(map.linear, load(curves, 6, i)), d1 = apply(map.linear, load(curves, 9, i));
   const Vector first{hn::Sub(d1.x, hn::Mul(two, d0.x)), hn::Sub(d1.y, hn::Mul(two, d0.y)),
                      hn::Sub(d1.z, hn::Mul(two, d0.z))};
   const Vector second{hn::Sub(d0.x, hn::Mul(two, d1.x)), hn::Sub(d0.y, hn::Mul(two, d1.y)),
                       hn::Sub(d0.z, hn::Mul(two, d1.z))};
-  if (!map.perspective)
-    return hn::Mul(factor,
-                   hn::Sqrt(hn::Max(squareInPlane(first.x, first.y), squareInPlane(second.x, second.y))));
-  const Vector origin{hn::Set(tag, map.origin.x), hn::Set(tag, map.origin.y), hn::Set(tag, map.origin.z)};
-  const Vector start = add(apply(map.linear, p), origin), end = add(apply(map.linear, q), origin);
-  const Vector way = subtract(end, start);
-  const Vector third{hn::Div(way.x, three), hn::Div(way.y, three), hn::Div(way.z, three)};
-  const Vector control[4] = {start, add(add(start, third), d0), add(subtract(end, third), d1), end};
-  const V nearPlane = hn::Set(tag, map.nearPlane);
-  const V nearest = hn::Min(hn::Min(control[0].z, control[1].z), hn::Min(control[2].z, control[3].z));
-  V largest = hn::Zero(tag);
-  for (const Vector& b : control) {
-    const V inverse = hn::Div(hn::Set(tag, 1.0f), hn::Max(b.z, nearPlane));
-    const V sx = hn::Mul(b.x, inverse), sy = hn::Mul(b.y, inverse);
-    const V one =
-        squareInPlane(hn::Sub(first.x, hn::Mul(first.z, sx)), hn::Sub(first.y, hn::Mul(first.z, sy)));
-    const V other =
-        squareInPlane(hn::Sub(second.x, hn::Mul(second.z, sx)), hn::Sub(second.y, hn::Mul(second.z, sy)));
-    largest = hn::Max(largest, hn::Max(one, other));
+  Squares squares{hn::Zero(tag), hn::Zero(tag), hn::Zero(tag)};
+  V nearest = hn::Set(tag, 1.0f);
+  if (map.perspective) {
+    const Vector origin{hn::Set(tag, map.origin.x), hn::Set(tag, map.origin.y), hn::Set(tag, map.origin.z)};
+    const Vector start = add(apply(map.linear, load(curves, 0, i)), origin),
+                 end = add(apply(map.linear, load(curves, 3, i)), origin);
+    const Vector way = subtract(end, start);
+    const Vector third{hn::Div(way.x, three), hn::Div(way.y, three), hn::Div(way.z, three)};
+    const Vector control[4] = {start, add(add(start, third), d0), add(subtract(end, third), d1), end};
+    const V nearPlane = hn::Set(tag, map.nearPlane);
+    nearest = hn::Min(hn::Min(control[0].z, control[1].z), hn::Min(control[2].z, control[3].z));
+    nearest = hn::Max(nearest, nearPlane);
+    for (const Vector& b : control) {
+      const V inverse = hn::Div(hn::Set(tag, 1.0f), hn::Max(b.z, nearPlane));
+      const V sx = hn::Mul(b.x, inverse), sy = hn::Mul(b.y, inverse);
+      squares.widen(hn::Sub(first.x, hn::Mul(first.z, sx)), hn::Sub(first.y, hn::Mul(first.z, sy)),
+                    hn::Sub(second.x, hn::Mul(second.z, sx)), hn::Sub(second.y, hn::Mul(second.z, sy)));
+    }
+  } else {
+    squares.widen(first.x, first.y, second.x, second.y);
   }
-  return hn::Div(hn::Mul(factor, hn::Sqrt(largest)), hn::Max(nearest, nearPlane));
+  const V factor = hn::Set(tag, PixelMap::kChordFactor), turnFactor = hn::Set(tag, PixelMap::kTurnFactor);
+  const V bend = hn::Div(hn::Mul(factor, hn::Sqrt(squares.bend)), nearest);
+  const V chord =
+      hn::Div(hn::Add(hn::Mul(factor, hn::Sqrt(squares.middle)), hn::Mul(turnFactor, hn::Sqrt(squares.turn))),
+              nearest);
+  hn::StoreU(bend, tag, errors.bends + i);
+  hn::StoreU(hn::Min(bend, chord), tag, errors.chords + i);
 }
 
-void errorsOf(const PixelMap& map, const CurveBatch& curves, float* errors) {
-  const Tag tag;
-  for (std::size_t i = 0; i < curves.count; i += hn::Lanes(tag))
-    hn::StoreU(
-        chordError(map, load(curves, 0, i), load(curves, 3, i), load(curves, 6, i), load(curves, 9, i)), tag,
-        errors + i);
+void errorsOf(const PixelMap& map, const CurveBatch& curves, CurveErrors& errors) {
+  for (std::size_t i = 0; i < curves.count; i += hn::Lanes(Tag())) errorsAt(map, curves, i, errors);
 }
 
 }  // namespace limn::silhouette::HWY_NAMESPACE
@@ -92,7 +106,7 @@ namespace limn::silhouette {
 
 HWY_EXPORT(errorsOf);
 
-void chordErrors(const PixelBound& bound, const CurveBatch& curves, float* errors) {
+void curveErrors(const PixelBound& bound, const CurveBatch& curves, CurveErrors& errors) {
   HWY_DYNAMIC_DISPATCH(errorsOf)(bound.map(), curves, errors);
 }
 

@@ -22,8 +22,14 @@ struct CurveBatch {
   }
 };
 
-/// errors[i] = bound.chordError of curve i, to the last bit; `errors` has room for kCapacity. The vector units of the
-/// machine do it.
-void chordErrors(const PixelBound& bound, const CurveBatch& curves, float* errors);
+/// Of up to 64 curves.
+struct CurveErrors {
+  float bends[CurveBatch::kCapacity], chords[CurveBatch::kCapacity];
+
+  CurveError operator[](std::size_t i) const { return {bends[i], chords[i]}; }
+};
+
+/// errors[i] = bound.curveError of curve i, to the last bit. The vector units of the machine do it.
+void curveErrors(const PixelBound& bound, const CurveBatch& curves, CurveErrors& errors);
 
 }  // namespace limn::silhouette

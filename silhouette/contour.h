@@ -69,7 +69,7 @@ inline glm::vec3 polylineVertex(const glm::vec3& p, const glm::vec3& q, const Cu
 /// n steps to 1/4 inside at n + 1, or from a chord, all inside, to 3/16 outside at two.
 inline int polylineSteps(float chordError, float tolerance, bool& capped) {
   if (chordError <= tolerance / (1.0f + 0.25f * kOutside)) return 1;
-  return std::max(2, segmentsFor(chordError, tolerance, capped));
+  return std::max(2, segmentsFor({chordError, chordError}, tolerance, capped));
 }
 
 }  // namespace limn::silhouette

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "silhouette/facing_kernel.h"
+#include "silhouette/pixel_bound.h"
 
 namespace limn::silhouette {
 namespace {
@@ -114,7 +115,7 @@ void EdgeClusters::update(const Mesh& mesh, const Topology& topology, const Edge
   });
 }
 
-// The most that edge or patch rise above their flat places: chords by 3/4 of a second difference, midpoints by the mean
+// The most that edge or patch rise above their flat places: chords by the bound of pixel_bound.h, midpoints by the mean
 // of six offsets and 2/9 of a fitted centre's.
 void EdgeClusters::measureEdges(std::size_t c, const Topology& topology, const EdgeTest& test,
                                 std::span<const CurveOffsets> curves, std::span<const vec3> centers,
@@ -133,8 +134,9 @@ void EdgeClusters::measureEdges(std::size_t c, const Topology& topology, const E
     if (!centers.empty())
       for (const Side& face : edge.faces)
         if (face.triangle != kNone) center = std::max(center, lengthOf(centers[face.triangle]));
-    const float chord = 0.75f * std::max(lengthOf(d[1] - 2.0f * d[0]), lengthOf(d[0] - 2.0f * d[1]));
-    bulges_[place] = std::max(chord, std::max(lengthOf(d[0]), lengthOf(d[1])) + 0.25f * center);
+    const float sum = lengthOf(d[0] + d[1]), turn = 3.0f * lengthOf(d[0] - d[1]);
+    const float chord = 0.5f * PixelMap::kChordFactor * sum + PixelMap::kTurnFactor * turn;
+    bulges_[place] = std::max(chord, 0.5f * sum + 0.25f * center);
     cluster.bulge = std::max(cluster.bulge, bulges_[place]);
     if (always && bulges_[place] > 0.0f) cluster.always |= std::uint64_t{1} << i;
   }

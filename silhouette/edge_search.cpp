@@ -29,8 +29,9 @@ void EdgeSearch::run(const Mesh& mesh, const Topology& topology, const CurveSet&
   // On a fine mesh that is nearly every edge by the contour, and telling costs less than looking around it.
   const auto isSeen = [&](std::size_t e) {
     const std::array<std::uint32_t, 2>& ends = curves.links[e].ends;
-    return parameters.segments > 0 || bound.chordError(mesh.positions[ends[0]], mesh.positions[ends[1]],
-                                                       curves.curves[e]) > kUnseen * parameters.tolerance;
+    return parameters.segments > 0 ||
+           bound.curveError(mesh.positions[ends[0]], mesh.positions[ends[1]], curves.curves[e]).bend >
+               kUnseen * parameters.tolerance;
   };
   crew.forBlocks(edges, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) states[e] = stateOf(e, mesh, curves, view, largest);

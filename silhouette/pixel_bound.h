@@ -16,6 +16,16 @@
 // tolerance)) segments suffice, from the curve to the polyline and back, since both points at a parameter are
 // that close.
 //
+// Curves that bend more at one end than at the other, or both ways, stay closer to few segments than Wang's bound says.
+// Second differences run linearly from D_0 to D_1, so at σ of a step of length h whose middle is at t the curve is away
+// from its chord by
+//
+//   3 σ (1-σ) h² |(1 - 2σ) h (D_1 - D_0) / 6 - D(t)| <= h² (3/4 |D(t)| + √3/36 h |D_1 - D_0|)
+//
+// |D| is convex, so the first or the last step has the most of it: there D(t) is 1 - h of D_0 or D_1 and h of D(1/2). With
+// W = 3/4 max(|D_0|, |D_1|), Wang's, and C = 3/4 |D(1/2)| + √3/36 |D_1 - D_0|, which is the chord's own bound, that is at
+// most (W + (C - W) / n) / n² for n steps.
+//
 // Depths are clamped to the near plane: the bound holds for curves beyond it; one that crosses it gets at
 // least the segments of what is visible of it, up to the cap.
 #pragma once
@@ -37,6 +47,7 @@ namespace limn::silhouette {
 struct PixelMap {
   /// 3/4, and a share that covers the roundings of the bound's own evaluation; in real numbers it is exact.
   static constexpr float kChordFactor = 0.75f * 1.0001f;
+  static constexpr float kTurnFactor = 0.0481126f * 1.0001f;  ///< √3/36, likewise
 
   glm::mat3 linear{1.0f};
   glm::vec3 origin{0.0f};
@@ -44,12 +55,17 @@ struct PixelMap {
   bool perspective = true;
 };
 
+/// Upper bounds of the distance in pixels between a cubic and its polylines.
+struct CurveError {
+  float bend = 0;   ///< n segments have 1/n² of it
+  float chord = 0;  ///< one segment; at most `bend`. n segments have (bend + (chord - bend) / n) / n²
+};
+
 class PixelBound {
  public:
   explicit PixelBound(const View& view);
 
-  /// Upper bound of the distance in pixels between a cubic and its chord; n segments have 1/n² of it.
-  float chordError(const glm::vec3& p, const glm::vec3& q, const CurveOffsets& d) const;
+  CurveError curveError(const glm::vec3& p, const glm::vec3& q, const CurveOffsets& d) const;
 
   /// Where a point is seen: pixels to the right of the middle of the window and above it, the depth clamped to the near
   /// plane.
@@ -70,11 +86,17 @@ class PixelBound {
 
 /// The least number of segments whose error is within the tolerance, at least 1; `capped` is set when that is
 /// more than kMaxSegments, which is then returned.
-inline int segmentsFor(float chordError, float tolerance, bool& capped) {
-  if (chordError <= tolerance) return 1;
-  const float wanted = std::ceil(std::sqrt(chordError / tolerance));
-  capped = !(wanted <= static_cast<float>(kMaxSegments));
-  return capped ? kMaxSegments : static_cast<int>(wanted);
+inline int segmentsFor(const CurveError& error, float tolerance, bool& capped) {
+  capped = false;
+  if (error.chord <= tolerance) return 1;
+  // n³ times the bound, so that nothing is divided: counts are small nearly always.
+  const auto suffices = [&](float n) {
+    return error.bend * n + (error.chord - error.bend) <= tolerance * (n * n * n);
+  };
+  int n = 2;
+  while (n < kMaxSegments && !suffices(static_cast<float>(n))) ++n;
+  capped = n == kMaxSegments && !suffices(static_cast<float>(n));
+  return n;
 }
 
 }  // namespace limn::silhouette

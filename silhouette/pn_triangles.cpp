@@ -91,7 +91,8 @@ std::uint32_t PnTriangles::segmentsFromTolerance(const View& view, float toleran
     for (std::size_t e = begin; e < end; ++e) {
       const std::array<std::uint32_t, 2> ends = edgeVertices(mesh_, topology_.edges()[e])[0];
       bool capped = false;
-      const float error = bound.chordError(mesh_.positions[ends[0]], mesh_.positions[ends[1]], curves_[e]);
+      const CurveError error =
+          bound.curveError(mesh_.positions[ends[0]], mesh_.positions[ends[1]], curves_[e]);
       largest = std::max(largest, segmentsFor(error, tolerance, capped));
       if (capped) cappedEdges.fetch_add(1, std::memory_order_relaxed);
     }

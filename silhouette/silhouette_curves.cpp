@@ -488,7 +488,7 @@ std::uint32_t Pass::steps(const vec3& p, const vec3& q, const CurveOffsets& offs
   if (parameters.segments > 0) return static_cast<std::uint32_t>(parameters.segments);
   bool capped = false;
   const auto count = static_cast<std::uint32_t>(
-      polylineSteps(bound.chordError(p, q, offsets), parameters.tolerance, capped));
+      polylineSteps(bound.curveError(p, q, offsets).bend, parameters.tolerance, capped));
   if (capped) std::atomic_ref<std::size_t>(report.cappedEdges).fetch_add(1, std::memory_order_relaxed);
   return count;
 }

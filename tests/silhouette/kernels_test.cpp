@@ -79,18 +79,24 @@ TEST(ChordKernel, EveryTargetGivesTheScalarBits) {
     const PixelBound bound(view);
     for (const std::size_t count : {std::size_t{1}, std::size_t{17}, CurveBatch::kCapacity}) {
       CurveBatch batch{};
-      std::vector<float> expected;
+      std::vector<CurveError> expected;
       while (batch.count < count) {
         const vec3 p = 2.0f * random.vector(), q = 2.0f * random.vector();
         const CurveOffsets d{random.vector(), random.vector()};
         batch.add(p, q, d);
-        expected.push_back(bound.chordError(p, q, d));
+        expected.push_back(bound.curveError(p, q, d));
       }
       onEveryTarget([&] {
-        std::array<float, CurveBatch::kCapacity> errors;
-        chordErrors(bound, batch, errors.data());
-        for (std::size_t i = 0; i < count; ++i)
-          ASSERT_EQ(std::bit_cast<std::uint32_t>(errors[i]), std::bit_cast<std::uint32_t>(expected[i])) << i;
+        CurveErrors errors;
+        curveErrors(bound, batch, errors);
+        for (std::size_t i = 0; i < count; ++i) {
+          ASSERT_EQ(std::bit_cast<std::uint32_t>(errors.bends[i]),
+                    std::bit_cast<std::uint32_t>(expected[i].bend))
+              << i;
+          ASSERT_EQ(std::bit_cast<std::uint32_t>(errors.chords[i]),
+                    std::bit_cast<std::uint32_t>(expected[i].chord))
+              << i;
+        }
       });
     }
   }

@@ -84,7 +84,7 @@ TEST_P(ToleranceOf, RandomCurves) {
     d[1].z = -std::fabs(d[1].z);
     const float tolerance = 0.25f * std::exp2(4.0f * random.next());
     bool capped = false;
-    const int n = segmentsFor(PixelBound(view).chordError(p, q, d), tolerance, capped);
+    const int n = segmentsFor(PixelBound(view).curveError(p, q, d), tolerance, capped);
     if (capped) continue;
     const double error = pixelError(view, p, q, d, n);
     ASSERT_LE(error, tolerance * 1.0001 + 1e-4) << "case " << k << ", " << n << " segments";
@@ -99,12 +99,14 @@ INSTANTIATE_TEST_SUITE_P(Projections, ToleranceOf, testing::Bool(), [](const aut
 
 TEST(Tolerance, CapsAndExtremes) {
   bool capped = false;
-  EXPECT_EQ(segmentsFor(0.0f, 0.0f, capped), 1);
+  EXPECT_EQ(segmentsFor({0.0f, 0.0f}, 0.0f, capped), 1);
   EXPECT_FALSE(capped);
-  EXPECT_EQ(segmentsFor(1.0f, 0.0f, capped), kMaxSegments);
+  EXPECT_EQ(segmentsFor({1.0f, 1.0f}, 0.0f, capped), kMaxSegments);
   EXPECT_TRUE(capped);
-  EXPECT_EQ(segmentsFor(1.0f, 1.0f, capped), 1);
-  EXPECT_EQ(segmentsFor(4.001f, 1.0f, capped), 3);
+  EXPECT_EQ(segmentsFor({1.0f, 1.0f}, 1.0f, capped), 1);
+  EXPECT_EQ(segmentsFor({4.001f, 4.001f}, 1.0f, capped), 3);
+  EXPECT_EQ(segmentsFor({4.001f, 0.9f}, 1.0f, capped), 1);
+  EXPECT_EQ(segmentsFor({4.001f, 3.0f}, 1.0f, capped), 2);
 }
 
 // The drawn outline of a refined sphere comes to the sphere's as the tolerance tightens: its vertices lie on
