@@ -17,6 +17,7 @@
 
 #include "raster/base/check.h"
 #include "raster/base/scratch.h"
+#include "silhouette/bare_test.h"
 #include "silhouette/chord_kernel.h"
 #include "silhouette/edge_clusters.h"
 #include "silhouette/edge_curves.h"
@@ -25,6 +26,7 @@
 #include "silhouette/pattern.h"
 #include "silhouette/pixel_bound.h"
 #include "silhouette/silhouetteness.h"
+#include "silhouette/smooth_edge.h"
 #include "silhouette/writer.h"
 
 namespace limn::silhouette {
@@ -41,36 +43,6 @@ constexpr std::size_t kEdgesPerBlock = 4096;
 constexpr std::size_t kWordsPerBlock = 64;  // of 64 triangles each
 constexpr float kThird = 1.0f / 3.0f;
 
-// An edge that bends in this view.
-struct SmoothEdge {
-  std::uint32_t edge = 0;
-  std::array<std::uint32_t, 2> ends{};  // vertices, of the first face
-  float alpha = 0;
-  CurveOffsets offsets{};  // α d
-  std::uint32_t segments = 1;
-  std::uint32_t firstVertex = 0;  // of segments - 1, or twice that, in the stream
-  float scale = 0;                // pixels that a unit of the model measures at most near it
-  bool seam = false;              // the faces have vertices of their own, those of faces[1] come second
-
-  std::uint32_t inner() const { return segments - 1; }
-  std::uint32_t vertexCount() const { return seam ? 2 * inner() : inner(); }
-};
-
-// Of a triangle's sides: nullptr where one does not bend.
-using Records = std::array<const SmoothEdge*, 3>;
-
-// The vertices along a side of a triangle, in its direction.
-struct SidePoints {
-  std::uint32_t from, to, first, segments;
-  bool backwards;
-
-  std::uint32_t operator()(std::uint32_t i) const {
-    if (i == 0) return from;
-    if (i == segments) return to;
-    return first + (backwards ? segments - 1 - i : i - 1);
-  }
-};
-
 // What a block of triangles adds to the stream.
 struct Share {
   std::uint32_t curved = 0, vertices = 0, triangles = 0;
@@ -81,12 +53,12 @@ struct Scratch {
   std::vector<std::uint64_t> masks;        // per cluster: the edges that bend
   std::vector<float> alphas;               // per place in the clusters' order, where an edge bends
   std::vector<float> scales;               // per cluster, where an edge bends
-  std::vector<SmoothEdge> smooth;
-  std::vector<std::uint32_t> recordOf;    // per edge: index into smooth, or kNone
-  std::vector<std::uint64_t> candidates;  // bit per triangle: has a smooth edge
-  std::vector<std::uint32_t> firstCut;    // per word of candidates: index into cuts, and their number
-  std::vector<Pattern> cuts;              // per candidate, in order
-  std::vector<Share> shares;              // per block of triangles, then prefix sums
+  std::vector<SmoothEdge> smooth;          // the first stands for all edges that do not bend
+  std::vector<std::uint32_t> recordOf;     // per edge: index into smooth
+  std::vector<std::uint64_t> candidates;   // bit per triangle: has a smooth edge
+  std::vector<std::uint32_t> firstCut;     // per word of candidates: index into cuts, and their number
+  std::vector<Pattern> cuts;               // per candidate, in order
+  std::vector<Share> shares;               // per block of triangles, then prefix sums
 };
 
 // One view's refinement; all it refers to outlives it.
@@ -121,16 +93,26 @@ struct Pass {
 
   Records recordsOf(std::size_t triangle) const {
     const std::uint32_t* edge = &topology.sideEdges()[3 * triangle];
-    Records records{};
-    for (std::size_t k = 0; k < 3; ++k)
-      if (const std::uint32_t record = scratch.recordOf[edge[k]]; record != kNone)
-        records[k] = &scratch.smooth[record];
-    return records;
+    const SmoothEdge* smooth = scratch.smooth.data();
+    return {smooth + scratch.recordOf[edge[0]], smooth + scratch.recordOf[edge[1]],
+            smooth + scratch.recordOf[edge[2]]};
   }
   Patch patchOf(std::size_t triangle, const Records& records) const;
-  bool passesBare(const Patch& patch, const Records& records, const Pattern& pattern) const;
+  struct BentTriangle {
+    std::array<BentSide, 3> sides;
+    float scale = 0;  // pixels that a unit of the model measures at most near it
+    vec3 fittedCenter{0.0f};
+    bool wholeFromContour = false;
+  };
+  BentTriangle bentTriangleOf(std::size_t triangle, const Records& records) const;
+  bool passesBare(std::size_t triangle, const BentTriangle& bent, std::uint32_t divided) const;
+  bool isWithin(float limit, const vec3& apart, float scale, std::size_t triangle,
+                const std::array<float, 3>& weights) const;
+  float distanceAt(std::size_t triangle, const std::array<float, 3>& weights, const vec3& apart) const;
   Pattern patternOf(std::size_t triangle, const Records& records) const;
-  SidePoints sidePointsOf(std::uint32_t triangle, std::uint32_t k, const SmoothEdge* smooth) const;
+  std::uint32_t gridSteps(std::size_t triangle, const BentTriangle& bent) const;
+  SidePoints sidePointsOf(std::uint32_t side, const SmoothEdge& smooth) const;
+  void emitBare(std::uint32_t triangle, const Records& records, const Pattern& pattern, std::uint32_t& face);
 };
 
 void Pass::run() {
@@ -142,13 +124,14 @@ void Pass::run() {
   listCandidates();
   place();
   emit();
-  for (const SmoothEdge& smooth : scratch.smooth) scratch.recordOf[smooth.edge] = kNone;
+  for (const SmoothEdge& smooth : std::span(scratch.smooth).subspan(1)) scratch.recordOf[smooth.edge] = 0;
 }
 
 // Lists the edges that bend visibly, in the order of the clusters, and marks their triangles as candidates.
 void Pass::classify() {
   const std::size_t count = clusters.count(), blocks = (count + kClustersPerBlock - 1) / kClustersPerBlock;
   scratch.blockCounts.assign(blocks + 1, 0);
+  scratch.blockCounts[0] = 1;
   scratch.masks.resize(count);
   scratch.alphas.resize(count * kEdgesPerCluster);
   scratch.scales.resize(count);
@@ -165,7 +148,8 @@ void Pass::classify() {
   });
   std::partial_sum(scratch.blockCounts.begin(), scratch.blockCounts.end(), scratch.blockCounts.begin());
   scratch.smooth.resize(scratch.blockCounts[blocks]);
-  report.smoothEdges = scratch.smooth.size();
+  scratch.smooth[0] = {};
+  report.smoothEdges = scratch.smooth.size() - 1;
 }
 
 // Their curves and segments.
@@ -193,6 +177,7 @@ void Pass::describe(std::size_t cluster, std::uint32_t record, CurveBatch& batch
     SmoothEdge& smooth = scratch.smooth[record];
     smooth.edge = clusters.edgeAt(place);
     smooth.alpha = scratch.alphas[place];
+    smooth.inverse = 1.0f / smooth.alpha;
     smooth.scale = scratch.scales[cluster];
     smooth.seam = (clusters.seams(cluster) >> i & 1) != 0;
     const CurveOffsets& d = curves[smooth.edge];
@@ -200,7 +185,10 @@ void Pass::describe(std::size_t cluster, std::uint32_t record, CurveBatch& batch
     smooth.ends = clusters.endsAt(place);
     batch.add(mesh.positions[smooth.ends[0]], mesh.positions[smooth.ends[1]], smooth.offsets);
     scratch.recordOf[smooth.edge] = record;
-    for (const Side& face : topology.edges()[smooth.edge].faces) {
+    const Edge& edge = topology.edges()[smooth.edge];
+    smooth.firstSide = 3 * edge.faces[0].triangle + edge.faces[0].side;
+    smooth.descending = edge.descending;
+    for (const Side& face : edge.faces) {
       if (face.triangle == kNone) continue;
       if (alone)
         scratch.candidates[face.triangle / 64] |= std::uint64_t{1} << (face.triangle % 64);
@@ -228,77 +216,86 @@ void Pass::setSegments(const CurveBatch& batch, std::uint32_t record) {
 Patch Pass::patchOf(std::size_t triangle, const Records& records) const {
   Patch patch;
   patch.wholeFromContour = parameters.silhouetteness == Silhouetteness::kCrossing;
-  const std::uint32_t* corner = &mesh.indices[3 * triangle];
-  for (std::size_t k = 0; k < 3; ++k) {
-    patch.corners[k] = mesh.positions[corner[k]];
-    patch.alphas[k] = records[k] == nullptr ? 0.0f : records[k]->alpha;
-    if (records[k] == nullptr) continue;
-    const bool ascends = topology.points()[corner[k]] == topology.edges()[records[k]->edge].point[0];
+  const auto side = static_cast<std::uint32_t>(3 * triangle);
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    patch.corners[k] = mesh.positions[mesh.indices[side + k]];
+    patch.alphas[k] = records[k]->alpha;
+    if (!records[k]->bends()) continue;
+    const bool back = records[k]->runsBack(side + k);
     const CurveOffsets& d = curves[records[k]->edge];
-    patch.sides[k] = {d[ascends ? 0 : 1], d[ascends ? 1 : 0]};
+    patch.sides[k] = {d[back ? 1 : 0], d[back ? 0 : 1]};
   }
   if (!centers.empty()) patch.fittedCenter = centers[triangle];
   return patch;
 }
 
-// Whether a triangle can do without vertices inside: what its sides span passes within the tolerance of the patch, in
-// the middle, and halfway between the two sides that are joined where there are.
-bool Pass::passesBare(const Patch& patch, const Records& records, const Pattern& pattern) const {
-  const std::uint32_t k = pattern.firstDivided(), divided = pattern.dividedSides();
-  const auto onSide = [&](std::uint32_t side, float t) {
-    return patch.alphas[side % 3] * curveOffset(patch.sides[side % 3], t);
-  };
-  float scale = 0.0f;
-  for (const SmoothEdge* record : records)
-    if (record != nullptr) scale = std::max(scale, record->scale);
-  const auto passes = [&](const vec3& weights, const vec3& spanned) {
-    const vec3 wanted = patch.offset(weights.x, weights.y, weights.z), apart = wanted - spanned;
-    if (dot(apart, apart) * (scale * scale) <= parameters.tolerance * parameters.tolerance) return true;
-    const vec3 flat = patch.flatPoint(weights.x, weights.y, weights.z);
-    return bound.distance(flat + spanned, flat + wanted) <= parameters.tolerance;
-  };
-  const vec3 center(kThird);
-  if (divided == 0) return passes(center, vec3(0.0f));
-  if (divided == 3) return passes(center, (onSide(0, 0.5f) + onSide(1, 0.5f) + onSide(2, 0.5f)) / 3.0f);
-  // A ladder's apex is the end of side k, a fan's the corner opposite to it.
-  vec3 halfway(0.25f);
-  halfway[static_cast<int>((k + 3 - divided) % 3)] = 0.5f;
-  if (divided == 1)
-    return passes(halfway, 0.5f * onSide(k, 0.5f)) && passes(center, (2.0f * kThird) * onSide(k, 0.5f));
-  return passes(halfway, 0.5f * (onSide(k, 0.5f) + onSide(k + 1, 0.5f))) &&
-         passes(center, 0.5f * (onSide(k, kThird) + onSide(k + 1, 2.0f * kThird)));
+Pass::BentTriangle Pass::bentTriangleOf(std::size_t triangle, const Records& records) const {
+  BentTriangle bent;
+  const auto first = static_cast<std::uint32_t>(3 * triangle);
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const SmoothEdge& smooth = *records[k];
+    const std::size_t start = smooth.runsBack(first + k) ? 1 : 0;
+    bent.sides[k] = {{smooth.offsets[start], smooth.offsets[1 - start]}, smooth.alpha, smooth.inverse};
+    bent.scale = std::max(bent.scale, smooth.scale);
+  }
+  if (!centers.empty()) bent.fittedCenter = centers[triangle];
+  bent.wholeFromContour = parameters.silhouetteness == Silhouetteness::kCrossing;
+  return bent;
+}
+
+// Whether two points over a place of the triangle are within so many pixels. Most often a bound of them all tells.
+bool Pass::isWithin(float limit, const vec3& apart, float scale, std::size_t triangle,
+                    const std::array<float, 3>& weights) const {
+  if (dot(apart, apart) * (scale * scale) <= limit * limit) return true;
+  return distanceAt(triangle, weights, apart) <= limit;
+}
+
+float Pass::distanceAt(std::size_t triangle, const std::array<float, 3>& weights, const vec3& apart) const {
+  const std::uint32_t* corner = &mesh.indices[3 * triangle];
+  const vec3 place = weights[0] * mesh.positions[corner[0]] + weights[1] * mesh.positions[corner[1]] +
+                     weights[2] * mesh.positions[corner[2]];
+  return bound.distance(place, place + apart);
+}
+
+bool Pass::passesBare(std::size_t triangle, const BentTriangle& bent, std::uint32_t divided) const {
+  const std::array<vec3, BareTest::kPlaces> apart =
+      BareTest::differences(divided, bent.sides, bent.wholeFromContour, bent.fittedCenter);
+  for (std::size_t i = 0; i < BareTest::kPlaces; ++i)
+    if (!isWithin(parameters.tolerance, apart[i], bent.scale, triangle, BareTest::weights(divided, i)))
+      return false;
+  return true;
 }
 
 // The steps of the grid inside follow the largest error of the spokes from the corners to the midpoint, by its size at
 // their middles: a spoke of an equilateral triangle is 1/√3 of a side, so its error is a third of what a side's would be.
+std::uint32_t Pass::gridSteps(std::size_t triangle, const BentTriangle& bent) const {
+  constexpr std::uint32_t kLeast = 3;
+  const float tolerance = parameters.tolerance * (centers.empty() ? 1.0f : kFittedInside);
+  const std::array<vec3, 3> beyond =
+      BareTest::beyondSpokes(bent.sides, bent.wholeFromContour, bent.fittedCenter);
+  bool suffices = true;  // most often the least number does
+  float largest = 0.0f;
+  for (std::size_t k = 0; k < 3; ++k)
+    suffices = suffices && isWithin(kLeast * kLeast * tolerance / 3.0f, beyond[k], bent.scale, triangle,
+                                    BareTest::spokeWeights(k));
+  if (suffices) return kLeast;
+  for (std::size_t k = 0; k < 3; ++k)
+    largest = std::max(largest, distanceAt(triangle, BareTest::spokeWeights(k), beyond[k]));
+  bool capped = false;  // the cap of the sides is what is reported
+  return static_cast<std::uint32_t>(segmentsFor({3.0f * largest, 3.0f * largest}, tolerance, capped));
+}
+
 Pattern Pass::patternOf(std::size_t triangle, const Records& records) const {
-  Pattern pattern;
-  std::uint32_t most = 1;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (records[k] == nullptr) continue;
-    pattern.sides[k] = records[k]->segments;
-    most = std::max(most, records[k]->segments);
-  }
+  Pattern pattern{{records[0]->segments, records[1]->segments, records[2]->segments}, 1};
+  const std::uint32_t most = std::max({pattern.sides[0], pattern.sides[1], pattern.sides[2]});
   pattern.steps = most;
   if (parameters.segments > 0) return pattern;
-  const Patch patch = patchOf(triangle, records);
-  if ((most <= 2 || pattern.dividedSides() < 3) && passesBare(patch, records, pattern)) {
-    pattern.steps = std::min(most, 2u);
-    return pattern;
-  }
-
-  const vec3 middle = patch.point(kThird, kThird, kThird);
-  float largest = 0.0f;
-  for (int k = 0; k < 3; ++k) {
-    vec3 weights(kThird / 2.0f);
-    weights[k] = 2.0f * kThird;
-    const vec3 chord = 0.5f * (patch.corners[static_cast<std::size_t>(k)] + middle);
-    largest = std::max(largest, bound.distance(chord, patch.point(weights.x, weights.y, weights.z)));
-  }
-  bool capped = false;  // the cap of the sides is what is reported
-  const float tolerance = parameters.tolerance * (centers.empty() ? 1.0f : kFittedInside);
-  pattern.steps = std::max(
-      3u, static_cast<std::uint32_t>(segmentsFor({3.0f * largest, 3.0f * largest}, tolerance, capped)));
+  const std::uint32_t divided =
+      (pattern.sides[0] > 1 ? 1u : 0u) | (pattern.sides[1] > 1 ? 2u : 0u) | (pattern.sides[2] > 1 ? 4u : 0u);
+  const BentTriangle bent = bentTriangleOf(triangle, records);
+  pattern.steps = (most <= 2 || divided != 7) && passesBare(triangle, bent, divided)
+                      ? std::min(most, 2u)
+                      : gridSteps(triangle, bent);
   return pattern;
 }
 
@@ -335,7 +332,7 @@ Share Pass::decide(std::size_t word) {
 void Pass::place() {
   const std::size_t words = stream.replaced.size(), blocks = (words + kWordsPerBlock - 1) / kWordsPerBlock;
   scratch.shares.assign(blocks + 1, {});
-  for (SmoothEdge& smooth : scratch.smooth) {
+  for (SmoothEdge& smooth : scratch.smooth) {  // the first has no vertices
     smooth.firstVertex = scratch.shares[0].vertices;
     scratch.shares[0].vertices += smooth.vertexCount();
   }
@@ -392,22 +389,35 @@ void Pass::emitEdge(const SmoothEdge& smooth) {
   }
 }
 
-SidePoints Pass::sidePointsOf(std::uint32_t triangle, std::uint32_t k, const SmoothEdge* smooth) const {
-  const std::uint32_t side = 3 * triangle + k;
-  SidePoints points{mesh.indices[side], mesh.indices[nextInTriangle(side)], 0, 1, false};
-  if (smooth == nullptr) return points;
-  const Edge& edge = topology.edges()[smooth->edge];
-  const std::uint32_t own = edge.faces[1].triangle == triangle && edge.faces[1].side == k ? 1 : 0;
-  points.first = static_cast<std::uint32_t>(mesh.positions.size()) + smooth->firstVertex +
-                 (smooth->seam ? own * smooth->inner() : 0);
-  points.segments = smooth->segments;
-  points.backwards = edge.runsBack(own);
-  return points;
+SidePoints Pass::sidePointsOf(std::uint32_t side, const SmoothEdge& smooth) const {
+  const std::uint32_t before = smooth.seam && smooth.isSecond(side) ? smooth.inner() : 0;
+  return {mesh.indices[side], mesh.indices[nextInTriangle(side)],
+          static_cast<std::uint32_t>(mesh.positions.size()) + smooth.firstVertex + before, smooth.segments,
+          smooth.runsBack(side)};
+}
+
+// From the list: with few segments, which loop runs how often cannot be predicted.
+void Pass::emitBare(std::uint32_t triangle, const Records& records, const Pattern& pattern,
+                    std::uint32_t& face) {
+  std::array<std::uint32_t, 3 * BareTriangles::kMaxSegments> points;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const SidePoints side = sidePointsOf(3 * triangle + k, *records[k]);
+    const std::uint32_t first = side.backwards ? side.first + side.segments - 2 : side.first;
+    const std::uint32_t step = side.backwards ? ~0u : 1u;  // -1, modulo 2^32
+    points[4 * k] = side.from;
+    for (std::uint32_t i = 0; i < 3; ++i) points[4 * k + 1 + i] = first + i * step;  // more than there are
+  }
+  const BareTriangles& list = BareTriangles::of(pattern);
+  for (std::uint32_t i = 0; i < list.count; ++i) {
+    const std::array<std::uint8_t, 3>& corner = list.corners[i];
+    writer.triangle(face++, triangle, points[corner[0]], points[corner[1]], points[corner[2]]);
+  }
 }
 
 void Pass::emitTriangle(std::uint32_t triangle, const Pattern& pattern, std::uint32_t& vertex,
                         std::uint32_t& face) {
   const Records records = recordsOf(triangle);
+  if (BareTriangles::has(pattern)) return emitBare(triangle, records, pattern, face);
   const std::uint32_t firstInner = static_cast<std::uint32_t>(mesh.positions.size()) + vertex;
   if (pattern.vertexCount() > 0) {
     const Patch patch = patchOf(triangle, records);
@@ -415,9 +425,9 @@ void Pass::emitTriangle(std::uint32_t triangle, const Pattern& pattern, std::uin
       writer.vertex(vertex++, patch.point(1.0f - v - w, v, w), {triangle, {v, w}}, patch.alphas);
     });
   }
-  const std::array<SidePoints, 3> sides{sidePointsOf(triangle, 0, records[0]),
-                                        sidePointsOf(triangle, 1, records[1]),
-                                        sidePointsOf(triangle, 2, records[2])};
+  const std::array<SidePoints, 3> sides{sidePointsOf(3 * triangle, *records[0]),
+                                        sidePointsOf(3 * triangle + 1, *records[1]),
+                                        sidePointsOf(3 * triangle + 2, *records[2])};
   forTriangles(
       pattern, [&](std::uint32_t k, std::uint32_t i) { return sides[k](i); },
       [&](std::uint32_t i) { return firstInner + i; },
@@ -463,7 +473,7 @@ class BlendedPatches final : public MethodState {
               RefineReport& report) override {
     Scratch& scratch = scratch_[crew.slot()];
     const Parameters wanted = whereFitted(parameters);
-    if (scratch.recordOf.empty()) scratch.recordOf.assign(topology_.edges().size(), kNone);
+    if (scratch.recordOf.empty()) scratch.recordOf.assign(topology_.edges().size(), 0);
     Pass pass{mesh_,
               topology_,
               test_,

@@ -8,6 +8,7 @@
 //       0---------1
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdlib>
@@ -19,19 +20,19 @@ struct Pattern {
   std::uint32_t steps = 1;                      ///< N of the grid, >= 1
 
   /// Steps along a side of the grid's inside; for steps >= 3.
-  std::uint32_t innerSteps() const { return steps - 3; }
+  constexpr std::uint32_t innerSteps() const { return steps - 3; }
   /// Vertices inside the triangle.
-  std::uint32_t vertexCount() const { return steps < 3 ? 0 : (steps - 1) * (steps - 2) / 2; }
-  std::uint32_t triangleCount() const {
+  constexpr std::uint32_t vertexCount() const { return steps < 3 ? 0 : (steps - 1) * (steps - 2) / 2; }
+  constexpr std::uint32_t triangleCount() const {
     const std::uint32_t border = sides[0] + sides[1] + sides[2];
     return steps < 3 ? border - 2 : border + 3 * innerSteps() + innerSteps() * innerSteps();
   }
 
-  std::uint32_t dividedSides() const {
+  constexpr std::uint32_t dividedSides() const {
     return (sides[0] > 1 ? 1u : 0u) + (sides[1] > 1 ? 1u : 0u) + (sides[2] > 1 ? 1u : 0u);
   }
   /// The first of the divided sides: the one after a whole one, or 0.
-  std::uint32_t firstDivided() const {
+  constexpr std::uint32_t firstDivided() const {
     for (std::uint32_t k = 0; k < 3; ++k)
       if (sides[k] > 1 && sides[k == 0 ? 2 : k - 1] == 1) return k;
     return 0;
@@ -51,7 +52,7 @@ void forVertices(const Pattern& pattern, const Visit& visit) {
 /// The triangles of a pattern without vertices inside: a ladder between two divided sides, a fan over one; for three halved
 /// sides all corners are cut off.
 template <class SidePoint, class Emit>
-void forBareTriangles(const Pattern& pattern, const SidePoint& sidePoint, const Emit& emit) {
+constexpr void forBareTriangles(const Pattern& pattern, const SidePoint& sidePoint, const Emit& emit) {
   const std::uint32_t k = pattern.firstDivided(), next = (k + 1) % 3, last = (k + 2) % 3;
   if (pattern.dividedSides() == 3) {
     const auto first = sidePoint(0, 1), second = sidePoint(1, 1), third = sidePoint(2, 1);
@@ -76,6 +77,50 @@ void forBareTriangles(const Pattern& pattern, const SidePoint& sidePoint, const 
     }
   }
 }
+
+/// The triangles of forBareTriangles() where no side has more than kMaxSegments segments, listed once: point i of side k is
+/// 4 k + i.
+struct BareTriangles {
+  static constexpr std::uint32_t kMaxSegments = 4;
+
+  std::uint32_t count = 0;
+  std::array<std::array<std::uint8_t, 3>, 8> corners{};
+
+  static bool has(const Pattern& pattern) {
+    return pattern.steps < 3 &&
+           std::max({pattern.sides[0], pattern.sides[1], pattern.sides[2]}) <= kMaxSegments;
+  }
+  static const BareTriangles& of(const Pattern& pattern) { return kTable[indexOf(pattern.sides)]; }
+
+ private:
+  using Table = std::array<BareTriangles, 64>;
+
+  static constexpr std::size_t indexOf(const std::array<std::uint32_t, 3>& sides) {
+    return 16 * std::size_t{sides[0] - 1} + 4 * std::size_t{sides[1] - 1} + sides[2] - 1;
+  }
+  static constexpr Table makeTable();
+  static const Table kTable;
+};
+
+constexpr BareTriangles::Table BareTriangles::makeTable() {
+  Table table{};
+  for (std::uint32_t a = 1; a <= kMaxSegments; ++a)
+    for (std::uint32_t b = 1; b <= kMaxSegments; ++b)
+      for (std::uint32_t c = 1; c <= kMaxSegments; ++c) {
+        const Pattern pattern{{a, b, c}, 2};
+        const bool halved = a == 2 && b == 2 && c == 2;
+        if (pattern.dividedSides() == 0 || (pattern.dividedSides() == 3 && !halved)) continue;
+        BareTriangles& list = table[indexOf(pattern.sides)];
+        const auto sidePoint = [&](std::uint32_t k, std::uint32_t i) {
+          return static_cast<std::uint8_t>(i == pattern.sides[k] ? (k + 1) % 3 * 4 : 4 * k + i);
+        };
+        forBareTriangles(pattern, sidePoint, [&](std::uint8_t p, std::uint8_t q, std::uint8_t r) {
+          list.corners[list.count++] = {p, q, r};
+        });
+      }
+  return table;
+}
+inline constexpr BareTriangles::Table BareTriangles::kTable = BareTriangles::makeTable();
 
 /// Calls emit(a, b, c) for the triangles, counter-clockwise like the whole. `sidePoint(k, i)` names point i = 0 …
 /// sides[k] of side k, `inner(i)` vertex i of forVertices.

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <vector>
 
@@ -48,6 +50,36 @@ TEST(Pattern, TilesTheTriangle) {
         Pattern pattern{{a, b, c}, 2};
         if (most <= 2 || pattern.dividedSides() < 3) expectTiled(pattern);
         for (pattern.steps = 3; pattern.steps <= 8; ++pattern.steps) expectTiled(pattern);
+      }
+}
+
+TEST(Pattern, BareTrianglesAreListedAsTheyAreFound) {
+  for (std::uint32_t a = 1; a <= 5; ++a)
+    for (std::uint32_t b = 1; b <= 5; ++b)
+      for (std::uint32_t c = 1; c <= 5; ++c) {
+        const Pattern pattern{{a, b, c}, 2};
+        const std::uint32_t most = std::max({a, b, c});
+        if (most == 1 || (most > 2 && pattern.dividedSides() == 3)) continue;
+        ASSERT_EQ(BareTriangles::has(pattern), most <= BareTriangles::kMaxSegments);
+        EXPECT_FALSE(BareTriangles::has({{a, b, c}, 3}));
+        if (most > BareTriangles::kMaxSegments) continue;
+        using Corners = std::array<glm::dvec2, 3>;
+        std::vector<Corners> found, listed;
+        forBareTriangles(
+            pattern, [&](std::uint32_t k, std::uint32_t i) { return onSide(pattern, k, i); },
+            [&](const glm::dvec2& p, const glm::dvec2& q, const glm::dvec2& r) {
+              found.push_back({p, q, r});
+            });
+        const BareTriangles& list = BareTriangles::of(pattern);
+        for (std::uint32_t t = 0; t < list.count; ++t) {
+          const auto point = [&](std::size_t k) {
+            return onSide(pattern, list.corners[t][k] / 4u, list.corners[t][k] % 4u);
+          };
+          listed.push_back({point(0), point(1), point(2)});
+        }
+        ASSERT_EQ(listed.size(), pattern.triangleCount());
+        for (std::size_t t = 0; t < found.size(); ++t)
+          for (std::size_t k = 0; k < 3; ++k) EXPECT_LT(glm::length(found[t][k] - listed[t][k]), 1e-12);
       }
 }
 
