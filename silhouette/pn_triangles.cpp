@@ -109,6 +109,8 @@ void PnTriangles::refine(const View& view, const Parameters& parameters, const C
                                          : segmentsFromTolerance(view, parameters.tolerance, crew, report);
   report.smoothEdges = topology_.edges().size();
   if (L == 1) return stream.setCounts(0, 0);
+  if (parameters.segments == 0 && std::size_t{L} * L > parameters.mostPerTriangle)
+    throw TooManyTriangles(std::size_t{L} * L);
   const std::size_t triangles = placeOfTriangle_.back();
   const std::size_t vertices = std::size_t{placeOfEdge_.back()} * onSide(L) + triangles * inTriangle(L);
   report.curvedTriangles = triangles;

@@ -18,8 +18,10 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -55,6 +57,18 @@ struct Parameters {
   bool boundaries = false;  ///< boundary edges likewise
   ShadingNormals shadingNormals = ShadingNormals::kLinear;
   bool listContour = false;  ///< fill RefinedStream::contour
+  /// Method::kPn by tolerance: TooManyTriangles if each triangle would become more than so many. For meshes of strangers:
+  /// a single long edge decides on all triangles.
+  std::size_t mostPerTriangle = std::numeric_limits<std::size_t>::max();
+};
+
+/// Thrown before a stream grows beyond Parameters::mostPerTriangle.
+class TooManyTriangles : public std::runtime_error {
+ public:
+  explicit TooManyTriangles(std::size_t triangles)
+      : std::runtime_error("the refinement takes too many triangles"), perTriangle(triangles) {}
+
+  std::size_t perTriangle;
 };
 
 inline constexpr int kMaxSegments = 64;  ///< per edge; past it the tolerance is no longer guaranteed
@@ -128,7 +142,7 @@ class Refiner {
   void deform(const Mesh& mesh);
 
   /// Refines for a view. The same bits for any number of threads. Throws std::invalid_argument for parameters
-  /// outside their ranges.
+  /// outside their ranges, TooManyTriangles for what that says.
   void refine(const View& view, const Parameters& parameters, RefinedStream& stream,
               RefineReport* report = nullptr);
 

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/scene/lights.h"
@@ -19,6 +21,8 @@ namespace limn::scene {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -149,6 +153,7 @@ struct FrameDrawer::State {
   silhouette::Refiner* refinerOf(MeshResources& shared, InstanceResources& instance);
   raster::Draw describe(const Instance& instance, const InstanceResources& resources) const;
   RefinedInstance refined(const InstanceResources& resources) const;
+  void refineWithinLimit();
   void addOverlays(const OverlaySet& wanted);
   [[noreturn]] void refuse(const raster::TooMuchEffort& error, double limit) const;
 };
@@ -297,6 +302,22 @@ FrameDrawer::FrameDrawer(const Scene& scene, int threads, const raster::Tuning& 
     : state_(std::make_unique<State>(scene, threads, tuning)) {}
 FrameDrawer::~FrameDrawer() = default;
 
+void FrameDrawer::State::refineWithinLimit() {
+  double coarse = 0.0;
+  for (const InstanceResources& resources : instances)
+    if (resources.visible) coarse += static_cast<double>(resources.shape.triangleCount());
+  if (scene.refinedLimit < kEndless)
+    parameters.mostPerTriangle = static_cast<std::size_t>(scene.refinedLimit / std::max(coarse, 1.0));
+  try {
+    silhouette::refineAll(tasks, parameters, workers);
+  } catch (const silhouette::TooManyTriangles& error) {
+    throw InputError(scene.name + ": /meshes: each of " + std::to_string(std::llround(coarse)) +
+                     " triangles would become " + std::to_string(error.perTriangle) +
+                     ", a file of this size may ask for " + std::to_string(parameters.mostPerTriangle) +
+                     "; draw it with --method patches or a larger --tolerance");
+  }
+}
+
 void FrameDrawer::State::refine(const Pose& pose, const CameraView& camera, const FrameSettings& settings,
                                 bool smooth) {
   parameters = settings.refinement;
@@ -313,7 +334,7 @@ void FrameDrawer::State::refine(const Pose& pose, const CameraView& camera, cons
     else
       resources.stream.clear(resources.shape.triangleCount());
   }
-  if (smooth) silhouette::refineAll(tasks, parameters, workers);
+  if (smooth) refineWithinLimit();
 
   // What the stream's vertices interpolate, instances side by side.
   workers.forBlocks(instances.size(), 1, [&](std::size_t i, std::size_t, int) {

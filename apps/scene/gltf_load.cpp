@@ -21,6 +21,8 @@ constexpr std::size_t kBytesPerTriangle = 640;
 constexpr std::size_t kFreeTrianglesPerByte = 20, kSmallFile = 64U << 10;
 /// Nanoseconds of one thread that a frame may take per byte of the model: a file of 64 KiB, eight seconds.
 constexpr double kEffortPerByte = 122e3;
+/// Triangles that all of them together may become per byte: of 64 KiB, a million.
+constexpr double kRefinedPerByte = 16.0;
 
 /// Counts the triangles that the scene draws and charges what they take to draw: a small file may place a mesh many times.
 std::size_t chargeInstances(GltfDocument& document, const Scene& scene) {
@@ -78,6 +80,7 @@ Scene loadGltf(const std::string& file, std::vector<std::uint8_t> bytes,
   const std::size_t triangles = chargeInstances(document, scene);
   checkWorldTransforms(document, scene, nodeOf);
   scene.effortLimit = kEffortPerByte * static_cast<double>(std::max(document.inputBytes(), kSmallFile));
+  scene.refinedLimit = kRefinedPerByte * static_cast<double>(std::max(document.inputBytes(), kSmallFile));
   scene.notices = std::move(document.notices);
   if (triangles == 0) scene.notices.emplace_back("The file holds no triangles to draw.");
   return scene;

@@ -117,6 +117,8 @@ struct Scene {
   std::vector<std::unique_ptr<raster::Texture>> textures;
   /// Of a frame of 1280x800 (raster::Frame::effortLimit); larger ones may take more in proportion.
   double effortLimit = std::numeric_limits<double>::infinity();
+  /// So many triangles may those that are drawn become where all of them are refined (silhouette::TooManyTriangles).
+  double refinedLimit = std::numeric_limits<double>::infinity();
   std::vector<std::string> notices;  ///< what was left out or mended, one sentence each, for the user
 };
 

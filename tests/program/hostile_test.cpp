@@ -11,14 +11,16 @@ using limn::scene::test::GltfWriter;
 using limn::scene::test::json;
 using limn::test::ProgramTest;
 using limn::test::Result;
+using limn::test::operator+;
 
 class Hostile : public ProgramTest {
  protected:
   /// Draws the model; `message` is part of what is said when it is refused, or null where it is drawn.
-  void expect(const std::string& name, const std::string& bytes, const char* message) const {
+  void expect(const std::string& name, const std::string& bytes, const char* message,
+              const std::vector<std::string>& options = {}) const {
     ASSERT_LE(bytes.size(), 64U << 10) << name;
     write(name, bytes);
-    const Result result = limn({"render", name, "-o", "picture.png"});
+    const Result result = limn(std::vector<std::string>{"render", name, "-o", "picture.png"} + options);
     EXPECT_EQ(result.status, message == nullptr ? 0 : 3) << name << ": " << result.err;
     if (message != nullptr) {
       EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
@@ -28,9 +30,10 @@ class Hostile : public ProgramTest {
     EXPECT_LE(result.seconds, 5.0) << name;
 #endif
   }
-  void expect(const std::string& name, const GltfWriter& writer, const char* message) const {
+  void expect(const std::string& name, const GltfWriter& writer, const char* message,
+              const std::vector<std::string>& options = {}) const {
     const auto bytes = writer.glb();
-    expect(name + ".glb", std::string(bytes.begin(), bytes.end()), message);
+    expect(name + ".glb", std::string(bytes.begin(), bytes.end()), message, options);
   }
 };
 
@@ -132,6 +135,24 @@ TEST_F(Hostile, LightsOverLights) {
   const json light = {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}};
   for (int i = 0; i < 900; ++i) writer.root["nodes"].push_back(light);
   expect("lights", writer, "/meshes/0: to draw it in so many layers");
+}
+
+TEST_F(Hostile, LongEdgesInAllTriangles) {
+  GltfWriter writer;
+  constexpr std::size_t kPoints = 250, kTriangles = 19000;
+  std::uint32_t random = 1;
+  const auto below = [&random](std::uint32_t end) {
+    random = random * 1664525U + 1013904223U;
+    return random / 65536U % end;
+  };
+  std::vector<float> positions;
+  for (std::size_t i = 0; i < 3 * kPoints; ++i) positions.push_back(static_cast<float>(below(1000)));
+  std::vector<std::uint8_t> indices;
+  for (std::size_t i = 0; i < 3 * kTriangles; ++i)
+    indices.push_back(static_cast<std::uint8_t>(below(kPoints)));
+  writer.addMesh({{"POSITION", writer.addArray(positions, "VEC3")}}, writer.addArray(indices, "SCALAR"));
+  expect("soup", writer, nullptr);
+  expect("soup", writer, "/meshes: each of", {"--method", "pn"});
 }
 
 TEST_F(Hostile, PicturesOverPictures) {
