@@ -18,6 +18,52 @@ namespace limn::raster {
 namespace HWY_NAMESPACE {
 
 #if HWY_TARGET != HWY_SCALAR
+/// Texture coordinates alone, where Tile::texturedMaterial has set their planes aside.
+class TexcoordVector {
+ public:
+  HWY_INLINE TexcoordVector() : x0_(hn::Zero(I())), y0_(hn::Zero(I())) {
+    for (VF* plane : {origin_, slopeX_, slopeY_, slopeQ_}) plane[0] = plane[1] = hn::Zero(F());
+  }
+
+  /// Takes a triangle's planes into the lanes `where`.
+  HWY_INLINE void set(const TexturePlanes& p, MI where) {
+    const F f;
+    const I d;
+    const MF lanes = hn::RebindMask(f, where);
+    const auto put = [&](VF& to, float value) HWY_ATTR { to = hn::IfThenElse(lanes, hn::Set(f, value), to); };
+    for (int i = 0; i < 2; ++i) {
+      put(origin_[i], p.origin[i]), put(slopeX_[i], p.slopeX[i]), put(slopeY_[i], p.slopeY[i]);
+      put(slopeQ_[i], p.slopeQ[i]);
+    }
+    x0_ = hn::IfThenElse(where, hn::Set(d, p.x0), x0_);
+    y0_ = hn::IfThenElse(where, hn::Set(d, p.y0), y0_);
+  }
+
+  /// At the sub-pixels (px, py), where the points' distances are `w`: coordinates and level of detail.
+  HWY_INLINE void store(const Texture::Data& texture, VI px, VI py, VF w, TextureBatch& batch,
+                        std::size_t i) const {
+    const F f;
+    const VF dx = hn::ConvertTo(f, hn::Sub(px, x0_)), dy = hn::ConvertTo(f, hn::Sub(py, y0_));
+    const auto at = [&](int k) HWY_ATTR {
+      return hn::Mul(hn::Add(hn::Add(origin_[k], hn::Mul(slopeY_[k], dy)), hn::Mul(slopeX_[k], dx)), w);
+    };
+    const VF u = at(0), v = at(1), scale = hn::Mul(w, hn::Set(f, static_cast<float>(kSubpixels)));
+    const auto change = [&](VF slope, VF value, VF q)
+                            HWY_ATTR { return hn::Mul(hn::Sub(slope, hn::Mul(value, q)), scale); };
+    const FootprintVector footprint{u,
+                                    v,
+                                    change(slopeX_[0], u, slopeQ_[0]),
+                                    change(slopeX_[1], v, slopeQ_[0]),
+                                    change(slopeY_[0], u, slopeQ_[1]),
+                                    change(slopeY_[1], v, slopeQ_[1])};
+    storeFootprint(texture, footprint, batch, i);
+  }
+
+ private:
+  VF origin_[2], slopeX_[2], slopeY_[2], slopeQ_[2];
+  VI x0_, y0_;
+};
+
 class AttributeVector {
  public:
   HWY_INLINE AttributeVector() : x0_(hn::Zero(I())), colored_(hn::FirstN(F(), 0)) {

@@ -74,6 +74,16 @@ Values valuesOf(const VertexAttributes& a, const Affine& toView) {
 
 }  // namespace
 
+void setTexcoords(const Batch& batch, const Cluster& cluster, const Material& material, bool perspective,
+                  VertexBlock& block) {
+  for (std::size_t i = 0; i < cluster.vertexCount; ++i) {
+    const std::uint32_t vertex = batch.set->vertices[cluster.firstVertex + i];
+    const glm::vec2 texcoord = attributesOfVertex(*batch.draw, vertex, material).texcoord;
+    const float q = perspective ? block.plane[i][3] : 1.0F;
+    block.texcoord[i][0] = texcoord.x * q, block.texcoord[i][1] = texcoord.y * q;
+  }
+}
+
 const Attributes& attributesOf(Tile& tile, Record& record) {
   if (record.attributes != kNoRecord) return tile.attributes[record.attributes];
   const FrameContext& context = *tile.context;

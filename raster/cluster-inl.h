@@ -59,6 +59,32 @@ struct ClusterInTile {
     r.source = source + (tag & (kClusterTriangles - 1U));
     r.attributes = kNoRecord;
   }
+
+  /// attributesOf() as far as texture coordinates go, given the triangle's record.
+  HWY_INLINE void setTexturePlanes(std::uint32_t tag, float x1, float x2, float y1, float y2, const Record& r,
+                                   bool perspective, TexturePlanes& p) const {
+    std::uint8_t v[3];
+    verticesOf(tag, v);
+    for (int i = 0; i < 2; ++i) {
+      const float origin = block->texcoord[v[0]][i];
+      const float d1 = block->texcoord[v[1]][i] - origin, d2 = block->texcoord[v[2]][i] - origin;
+      p.origin[i] = origin;
+      p.slopeX[i] = d1 * x1 - d2 * x2;
+      p.slopeY[i] = d2 * y2 - d1 * y1;
+    }
+    p.slopeQ[0] = perspective ? r.slopeX[3] : 0.0F;
+    p.slopeQ[1] = perspective ? r.slopeY[3] : 0.0F;
+    p.x0 = r.x0, p.y0 = r.y0;
+  }
+
+  /// The record that is next to be kept, and what belongs to it.
+  HWY_INLINE void prepareRecord(Tile& tile, std::uint32_t tag, float x1, float x2, float y1, float y2) const {
+    Record& record = tile.records[tile.recordCount];
+    setRecord(tag, x1, x2, y1, y2, record);
+    if (tile.texturedMaterial != nullptr)
+      setTexturePlanes(tag, x1, x2, y1, y2, record, tile.context->map.perspective,
+                       tile.texturePlanes[tile.recordCount]);
+  }
 };
 
 /// First and last pixel (in the window) of a range of sub-pixels that hold a sample in it, clipped to the tile.

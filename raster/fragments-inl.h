@@ -9,6 +9,7 @@
 
 #include <bit>
 
+#include "raster/attributes-inl.h"
 #include "raster/points-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -180,10 +181,10 @@ class Fragments {
   HWY_INLINE void push(VI4 ids, VI4 tags, hn::Mask<I4> which) {
     const I4 d;
     const std::size_t count = hn::CountTrue(d, which);
-    if (tile_.plainMaterial != nullptr) {
+    if (soleMaterial_ != nullptr) {
       hn::StoreU(hn::Compress(ids, which), d, id_ + count_);
       hn::StoreU(hn::Compress(tags, which), d, tag_ + count_);
-      material_ = tile_.plainMaterial;
+      material_ = soleMaterial_;
       count_ += count;
       return;
     }
@@ -206,7 +207,7 @@ class Fragments {
     for (std::size_t i = count_; i < padded; ++i) id_[i] = id_[0], tag_[i] = tag_[0];
     interpolate(padded);
     points_.count = padded;
-    setBase();
+    setBases();
     shadePoints(points_, *material_, lighting_);
     addUp(padded);
     tile_.statistics.pixelsShaded += count_;
@@ -279,23 +280,38 @@ class Fragments {
   }
 
   // Base colours, with vertex colours and texels where the material or a mesh has them.
-  void setBase() {
-    const F f;
-    const VF one = hn::Set(f, 1.0F), zero = hn::Zero(f);
+  void setBases() {
+    if (soleMaterial_ != nullptr) {
+      if (soleMaterial_ == tile_.plainMaterial) return setPlainBase(*material_, points_);
+      for (std::size_t i = 0; i < points_.count; i += kLanes) setTexcoords(i);
+      return addTexels<false>(*material_, texture_, points_);
+    }
     bool needed = material_->baseColorTexture != nullptr;
-    if (tile_.plainMaterial == nullptr)
-      for (std::size_t i = 0; i < count_; ++i)
-        needed |= tile_.surfaceOf(tile_.records[static_cast<std::size_t>(id_[i])]).hasColors;
+    for (std::size_t i = 0; i < count_; ++i)
+      needed |= tile_.surfaceOf(tile_.records[static_cast<std::size_t>(id_[i])]).hasColors;
     if (!needed) return setPlainBase(*material_, points_);
     for (std::size_t i = 0; i < points_.count; i += kLanes) {
-      Color vertex{one, one, one};
-      FootprintVector footprint{zero, zero, zero, zero, zero, zero};
+      Color vertex;
+      FootprintVector footprint;
       interpolate(i, vertex, footprint);
-      const Color base = baseOf(*material_, vertex, footprint);
-      hn::Store(base.r, f, points_.base[0] + i);
-      hn::Store(base.g, f, points_.base[1] + i);
-      hn::Store(base.b, f, points_.base[2] + i);
+      setBase(*material_, vertex, points_, i);
+      if (material_->baseColorTexture != nullptr)
+        storeFootprint(material_->baseColorTexture->data(), footprint, texture_, i);
     }
+    if (material_->baseColorTexture != nullptr) addTexels<true>(*material_, texture_, points_);
+  }
+
+  HWY_INLINE void setTexcoords(std::size_t i) {
+    const F f;
+    const I d;
+    TexcoordVector texcoords;
+    for (std::size_t k = 0; k < kLanes; ++k)
+      texcoords.set(tile_.texturePlanes[static_cast<std::size_t>(id_[i + k])], lanesOf(1U << k));
+    VI x, y;
+    hn::LoadInterleaved2(d, &at_[i].x, x, y);
+    const VF one = hn::Set(f, 1.0F), q = hn::Load(f, points_.depth + i);
+    texcoords.store(material_->baseColorTexture->data(), x, y,
+                    context_.map.perspective ? hn::Div(one, q) : one, texture_, i);
   }
 
   void interpolate(std::size_t first, Color& vertex, FootprintVector& footprint) const {
@@ -347,12 +363,15 @@ class Fragments {
       samplePlaces_[kMaxSamples + 1];  // in the tile's first pixel: of the samples, and of the centre
 
   // Fragments waiting to be shaded, all of one material.
+  const Material* const soleMaterial_ =
+      tile_.plainMaterial != nullptr ? tile_.plainMaterial : tile_.texturedMaterial;
   const Material* material_ = nullptr;
   std::size_t count_ = 0;
   alignas(64) std::int32_t id_[kSize + kLanes], tag_[kSize + kLanes];
   alignas(64) SamplePosition at_[kSize];  // where they are shaded, in the window
   alignas(64) float planes_[kSize][4];
   PointBatch points_;
+  TextureBatch texture_;
 
   // Pixels, and the sums of their fragments so far: colours and how many samples they show.
   std::size_t pixels_ = 0;

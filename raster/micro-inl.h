@@ -147,9 +147,10 @@ class Micro {
 
   // Keeps the record of a triangle that covers a sample.
   HWY_INLINE void keep(std::size_t lane) {
-    const std::uint32_t id = tile_.recordCount++;
+    const std::uint32_t id = tile_.recordCount;
     id_[lane] = id;
-    cluster_->setRecord(tagOf(lane), x1_[lane], x2_[lane], y1_[lane], y2_[lane], tile_.records[id]);
+    cluster_->prepareRecord(tile_, tagOf(lane), x1_[lane], x2_[lane], y1_[lane], y2_[lane]);
+    ++tile_.recordCount;
     if (!severalSamples_) return;
     CenterEdges& edges = tile_.centerEdges[id];
     for (int k = 0; k < 3; ++k)

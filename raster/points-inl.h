@@ -51,14 +51,26 @@ inline void shadePoints(PointBatch& points, const Material& m, const Lighting& l
       hn::Store(hn::Load(f, points.base[k] + i), f, points.color[k] + i);
 }
 
-/// The base colour of a material with vertex colours and, where it has a texture, texels.
-HWY_INLINE Color baseOf(const Material& m, const Color& vertex, const FootprintVector& footprint) {
+/// Points' base colours: the material's, times vertex colours.
+HWY_INLINE void setBase(const Material& m, const Color& vertex, PointBatch& points, std::size_t i) {
   const F f;
-  const Color base{hn::Mul(hn::Set(f, m.baseColor.x), vertex.r), hn::Mul(hn::Set(f, m.baseColor.y), vertex.g),
-                   hn::Mul(hn::Set(f, m.baseColor.z), vertex.b)};
-  if (m.baseColorTexture == nullptr) return base;
-  const Color texel = sampleVector(m.baseColorTexture->data(), footprint);
-  return {hn::Mul(base.r, texel.r), hn::Mul(base.g, texel.g), hn::Mul(base.b, texel.b)};
+  hn::Store(hn::Mul(hn::Set(f, m.baseColor.x), vertex.r), f, points.base[0] + i);
+  hn::Store(hn::Mul(hn::Set(f, m.baseColor.y), vertex.g), f, points.base[1] + i);
+  hn::Store(hn::Mul(hn::Set(f, m.baseColor.z), vertex.b), f, points.base[2] + i);
+}
+
+/// Base colours of all points: the material's, or with vertex colours those in `points`, times texels.
+template <bool kColored>
+HWY_INLINE void addTexels(const Material& m, TextureBatch& batch, PointBatch& points) {
+  const F f;
+  const TextureSampler sample(m.baseColorTexture->data(), batch);
+  sample(points.count, [&](std::size_t i, const Color& texel) HWY_ATTR {
+    const VF channels[3] = {texel.r, texel.g, texel.b};
+    for (int k = 0; k < 3; ++k) {
+      const VF base = kColored ? hn::Load(f, points.base[k] + i) : hn::Set(f, m.baseColor[k]);
+      hn::Store(hn::Mul(base, channels[k]), f, points.base[k] + i);
+    }
+  });
 }
 
 /// Fills a batch's base colours with a material's that has neither vertex colours nor a texture.

@@ -26,9 +26,8 @@ class Rows {
       boxes_.set(tile_, queue, i);
       boxes_.setSpans<kColumns>();
       for (std::size_t lane = 0; lane < kLanes && i + lane < queue.count; ++lane) {
-        cluster.setRecord(static_cast<std::uint32_t>(queue.tag[i + lane]), boxes_.basis[0][lane],
-                          boxes_.basis[1][lane], boxes_.basis[2][lane], boxes_.basis[3][lane],
-                          tile_.records[tile_.recordCount]);
+        cluster.prepareRecord(tile_, static_cast<std::uint32_t>(queue.tag[i + lane]), boxes_.basis[0][lane],
+                              boxes_.basis[1][lane], boxes_.basis[2][lane], boxes_.basis[3][lane]);
         drawBox(lane);
       }
     }

@@ -41,7 +41,8 @@ class Shading {
 
   void run() {
     if (tile_.isEmpty()) return fill();
-    if (tile_.plainMaterial != nullptr) setMaterial(*tile_.plainMaterial, true);
+    if (tile_.plainMaterial != nullptr) setMaterial(*tile_.plainMaterial, Base::kPlain);
+    if (tile_.texturedMaterial != nullptr) setMaterial(*tile_.texturedMaterial, Base::kTextured);
     const bool simple = samples_ == 1 && tile_.plainMaterial != nullptr && !tile_.overlaid;
     for (int y = 0; y < tile_.height; ++y) {
       rayY_ = hn::GetLane(lighting_.rayY(hn::Set(I(), (tile_.top + y) * kSubpixels + kOneSample[0].y)));
@@ -125,7 +126,7 @@ class Shading {
     unsigned left = inside & ~whole;
     if (seen != 0) left |= bitsOf(pushSeen(x, y, lanesOf(seen), [&] { return ids.first(); }));
     if (left == 0) return;
-    if (tile_.overlaid || tile_.plainMaterial == nullptr) left = leaveSome(left, x, y);
+    if (tile_.overlaid || !tile_.hasSoleMaterial()) left = leaveSome(left, x, y);
     if (left != 0) fragments_.add<kGroups>(x, y, left);
   }
 
@@ -134,8 +135,12 @@ class Shading {
   HWY_INLINE MI pushSeen(int x, int y, MI seen, const Ids& ids) {
     const MI none = hn::FirstN(I(), 0);
     if (hn::AllFalse(I(), seen)) return none;
-    if (tile_.plainMaterial == nullptr) return pushByMaterial(x, y, ids(), seen);
-    push(x, y, seen);
+    if (tile_.plainMaterial != nullptr)
+      push(x, y, seen);
+    else if (tile_.texturedMaterial != nullptr)
+      pushTextured(x, y, ids(), seen);
+    else
+      return pushByMaterial(x, y, ids(), seen);
     return none;
   }
 
@@ -186,12 +191,15 @@ class Shading {
     std::copy(bytes, bytes + static_cast<std::ptrdiff_t>(4 * (tile_.width - x)), to);
   }
 
-  void setMaterial(const Material& m, bool plain) {
-    if (material_ == &m && plain == plain_) return;
+  // Where the points' base colours come from: the material alone, its texture, or vertex colours and perhaps a texture.
+  enum class Base { kPlain, kTextured, kColored };
+
+  void setMaterial(const Material& m, Base base) {
+    if (material_ == &m && base == base_) return;
     flush();
     material_ = &m;
-    plain_ = plain;
-    if (plain) setPlainBase(m, points_);
+    base_ = base;
+    if (base == Base::kPlain) setPlainBase(m, points_);
   }
 
   // Adds the pixels in `lanes` to the points waiting to be shaded; over background, the others are written as such.
@@ -222,6 +230,10 @@ class Shading {
   // Shades the points that wait, and writes them.
   void flush() {
     if (points_.count == 0) return;
+    if (base_ == Base::kTextured)
+      addTexels<false>(*material_, texture_, points_);
+    else if (base_ == Base::kColored && material_->baseColorTexture != nullptr)
+      addTexels<true>(*material_, texture_, points_);
     shadePoints(points_, *material_, lighting_);
     if (context_.frame.encoding == Encoding::kSrgb)
       writePoints<Encoding::kSrgb>();
@@ -255,6 +267,26 @@ class Shading {
                reinterpret_cast<std::int32_t*>(at.to));
   }
 
+  // 1/q of points.
+  HWY_INLINE VF distancesOf(std::size_t n) const {
+    const F f;
+    const VF one = hn::Set(f, 1.0F);
+    return context_.map.perspective ? hn::Div(one, hn::Load(f, points_.depth + n)) : one;
+  }
+
+  // The same for a tile's one textured material.
+  HWY_INLINE void pushTextured(int x, int y, VI ids, MI seen) {
+    const I d;
+    alignas(64) std::uint32_t row[kLanes];
+    hn::Store(ids, d, reinterpret_cast<std::int32_t*>(row));
+    TexcoordVector texcoords;
+    forTriangles(row, ids, seen,
+                 [&](std::uint32_t id, MI same) HWY_ATTR { texcoords.set(tile_.texturePlanes[id], same); });
+    const std::size_t n = push(x, y, seen);
+    const VI py = hn::Set(d, (tile_.top + y) * kSubpixels + kOneSample[0].y);
+    texcoords.store(material_->baseColorTexture->data(), centersFrom(x), py, distancesOf(n), texture_, n);
+  }
+
   // The same for the triangles' own materials; returns the pixels that are left to the definition.
   MI pushByMaterial(int x, int y, VI ids, MI seen) {
     const I d;
@@ -270,7 +302,8 @@ class Shading {
       MI mine = hn::FirstN(d, 0);
       bool plain = true;
       AttributeVector attributes;
-      forTriangles(row, ids, todo, [&](Record& record, MI same) {
+      forTriangles(row, ids, todo, [&](std::uint32_t id, MI same) {
+        Record& record = tile_.records[id];
         const Surface surface = tile_.surfaceOf(record);
         if (surface.material != material) return;
         mine = hn::Or(mine, same);
@@ -284,21 +317,19 @@ class Shading {
         complex = hn::Or(complex, mine);
         continue;
       }
-      setMaterial(*material, plain);
+      setMaterial(*material, plain ? Base::kPlain : Base::kColored);
       const std::size_t n = push(x, y, mine);
       if (plain) continue;
-      const bool perspective = context_.map.perspective;
-      const VF q = hn::Load(f, points_.depth + n), one = hn::Set(f, 1.0F);
-      const VF w = perspective ? hn::Div(one, q) : one;
-      const Color base = baseOf(*material, attributes.color(px, w), attributes.footprint(px, w, perspective));
-      hn::Store(base.r, f, points_.base[0] + n);
-      hn::Store(base.g, f, points_.base[1] + n);
-      hn::Store(base.b, f, points_.base[2] + n);
+      const VF w = distancesOf(n);
+      setBase(*material, attributes.color(px, w), points_, n);
+      if (material->baseColorTexture != nullptr)
+        storeFootprint(material->baseColorTexture->data(),
+                       attributes.footprint(px, w, context_.map.perspective), texture_, n);
     }
     return complex;
   }
 
-  // Calls body(record, lanes) for every triangle that is seen in some lanes of a block.
+  // Calls body(number of the record, lanes) for every triangle that is seen in some lanes of a block.
   template <class Body>
   HWY_INLINE void forTriangles(const std::uint32_t* row, VI ids, MI seen, const Body& body) {
     const I d;
@@ -306,7 +337,7 @@ class Shading {
       const std::uint32_t id = row[static_cast<std::size_t>(hn::FindFirstTrue(d, seen))];
       const MI same = hn::And(hn::Eq(ids, hn::Set(d, static_cast<std::int32_t>(id))), seen);
       seen = hn::AndNot(same, seen);
-      body(tile_.records[id], same);
+      body(id, same);
     }
   }
 
@@ -321,8 +352,9 @@ class Shading {
   const Material* material_ = nullptr;
   alignas(64) float rayX_[128 + 16];  // of the tile's columns
   float rayY_ = 0.0F;                 // of the row
-  bool plain_ = false;                // the base colour is the material's
+  Base base_ = Base::kColored;
   PointBatch points_;
+  TextureBatch texture_;
   Place places_[PointBatch::kSize / kLanes];
 };
 

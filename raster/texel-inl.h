@@ -111,61 +111,123 @@ HWY_INLINE Color alongRow(const TexelPairs& p, VF share) {
           mixed(low(p.blueAlpha), low(p.nextBlueAlpha))};
 }
 
-/// sampleLevel() of texel.h, each lane in its own level, `linear` or not.
-HWY_INLINE Color sampleLevelVector(const Texture::Data& t, const FootprintVector& p, VI level, MF linear) {
-  const I d;
+/// Points at which a texture is sampled, with what the steps of sampling hand on. Steps go over all points: what one
+/// stores is addresses for the next, which could not be taken out of a vector as fast as they are loaded.
+struct TextureBatch {
+  static constexpr std::size_t kSize = PointBatch::kSize;
+  alignas(64) float u[kSize], v[kSize], lambda[kSize];
+  alignas(64) std::int32_t upper[kSize], lower[kSize];
+  alignas(64) float shareX[kSize], shareY[kSize], fine[3][kSize];
+};
+
+HWY_INLINE void storeFootprint(const Texture::Data& texture, const FootprintVector& p, TextureBatch& batch,
+                               std::size_t i) {
   const F f;
-  const LevelTables& l = t.tables;
-  const TapVector x = tapsOf(wrappedVector(p.u, t.sampler.wrapU), lookUp(f, l.width, level),
-                             lookUp(d, l.lastColumn, level), linear);
-  const TapVector y = tapsOf(wrappedVector(p.v, t.sampler.wrapV), lookUp(f, l.height, level),
-                             lookUp(d, l.lastRow, level), linear);
-  const VI stride = lookUp(d, l.stride, level);
-  const VI upper = hn::Add(hn::Add(lookUp(d, l.origin, level), hn::Mul(y.texel, stride)), x.texel);
-  alignas(64) std::int32_t upperAt[kLanes], lowerAt[kLanes];
-  hn::Store(upper, d, upperAt);
-  hn::Store(hn::Add(upper, stride), d, lowerAt);
-  const Color a = alongRow(fetchPairs(t.texels.data(), upperAt), x.share);
-  const Color b = alongRow(fetchPairs(t.texels.data(), lowerAt), x.share);
-  const auto channel = [&](VF from, VF to) {
-    return hn::Mul(hn::Add(from, hn::Mul(hn::Sub(to, from), y.share)), hn::Set(f, 1.0F / 65535.0F));
-  };
-  return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
+  hn::Store(p.u, f, batch.u + i);
+  hn::Store(p.v, f, batch.v + i);
+  hn::Store(levelOfVector(texture, p), f, batch.lambda + i);
 }
 
 /// sample() of texel.h.
-HWY_INLINE Color sampleVector(const Texture::Data& t, const FootprintVector& p) {
-  const I d;
-  const F f;
-  const VF lambda = levelOfVector(t, p);
-  const VI last = hn::Set(d, static_cast<std::int32_t>(t.levels.size()) - 1);
-  const MF smaller = hn::Gt(lambda, hn::Zero(f));
-  const Filter filter = t.sampler.minification;
-  const bool nearestMip = filter == Filter::kNearestMipNearest || filter == Filter::kLinearMipNearest;
-  const bool oneLevel = filter == Filter::kNearest || filter == Filter::kLinear;
-  const bool minifiesLinearly =
-      filter == Filter::kLinear || filter == Filter::kLinearMipNearest || filter == Filter::kLinearMipLinear;
-  const MF all = hn::FirstN(f, kLanes), none = hn::Not(all);
-  const MF linear =
-      hn::Or(minifiesLinearly ? smaller : none, t.sampler.linearMagnification ? hn::Not(smaller) : none);
+class TextureSampler {
+ public:
+  TextureSampler(const Texture::Data& texture, TextureBatch& batch) : t_(texture), p_(batch) {
+    const Filter filter = t_.sampler.minification;
+    nearestMip_ = filter == Filter::kNearestMipNearest || filter == Filter::kLinearMipNearest;
+    oneLevel_ = filter == Filter::kNearest || filter == Filter::kLinear;
+    minifiesLinearly_ = filter == Filter::kLinear || filter == Filter::kLinearMipNearest ||
+                        filter == Filter::kLinearMipLinear;
+  }
 
-  const VF rounded = nearestMip ? hn::Add(lambda, hn::Set(f, 0.5F)) : lambda;
-  const VI chosen = oneLevel ? hn::Zero(d) : hn::Min(hn::ConvertTo(d, rounded), last);
-  const VI level = hn::IfThenElseZero(hn::RebindMask(d, smaller), hn::Max(chosen, hn::Zero(d)));
-  Color color = sampleLevelVector(t, p, level, linear);
-  if (oneLevel || nearestMip) return color;
-  const MF between = hn::And(smaller, hn::RebindMask(f, hn::Lt(level, last)));
-  if (hn::AllFalse(f, between)) return color;
-  const Color coarse = sampleLevelVector(t, p, hn::Min(hn::Add(level, hn::Set(d, 1)), last), linear);
-  const VF share = hn::Sub(lambda, hn::ConvertTo(f, level));
-  const auto mix = [&](VF& fine, VF other) {
-    fine = hn::IfThenElse(between, hn::Add(fine, hn::Mul(hn::Sub(other, fine), share)), fine);
+  /// Calls body(i, colour) for the points [i, i + kLanes) of `count`, a multiple of that.
+  template <class Body>
+  HWY_INLINE void operator()(std::size_t count, const Body& body) const {
+    const VI none = hn::Zero(I());
+    for (std::size_t i = 0; i < count; i += kLanes) setTaps(i, none);
+    if (oneLevel_ || nearestMip_) {
+      for (std::size_t i = 0; i < count; i += kLanes) body(i, texelAt(i));
+      return;
+    }
+    for (std::size_t i = 0; i < count; i += kLanes) {
+      const Color fine = texelAt(i);
+      hn::Store(fine.r, F(), p_.fine[0] + i);
+      hn::Store(fine.g, F(), p_.fine[1] + i);
+      hn::Store(fine.b, F(), p_.fine[2] + i);
+    }
+    for (std::size_t i = 0; i < count; i += kLanes) setTaps(i, hn::Set(I(), 1));
+    for (std::size_t i = 0; i < count; i += kLanes) body(i, mixed(i, texelAt(i)));
+  }
+
+ private:
+  struct Chosen {
+    VI level;
+    MF smaller, linear;
   };
-  mix(color.r, coarse.r);
-  mix(color.g, coarse.g);
-  mix(color.b, coarse.b);
-  return color;
-}
+
+  HWY_INLINE VI lastLevel() const { return hn::Set(I(), static_cast<std::int32_t>(t_.levels.size()) - 1); }
+
+  HWY_INLINE Chosen chosenAt(VF lambda) const {
+    const I d;
+    const F f;
+    const MF smaller = hn::Gt(lambda, hn::Zero(f));
+    const MF all = hn::FirstN(f, kLanes), none = hn::Not(all);
+    const MF linear =
+        hn::Or(minifiesLinearly_ ? smaller : none, t_.sampler.linearMagnification ? hn::Not(smaller) : none);
+    const VF rounded = nearestMip_ ? hn::Add(lambda, hn::Set(f, 0.5F)) : lambda;
+    const VI chosen = oneLevel_ ? hn::Zero(d) : hn::Min(hn::ConvertTo(d, rounded), lastLevel());
+    return {hn::IfThenElseZero(hn::RebindMask(d, smaller), hn::Max(chosen, hn::Zero(d))), smaller, linear};
+  }
+
+  // Where the texels of points [i, i + kLanes) lie, each point in a level `coarser` than its own.
+  HWY_INLINE void setTaps(std::size_t i, VI coarser) const {
+    const I d;
+    const F f;
+    const LevelTables& l = t_.tables;
+    const Chosen chosen = chosenAt(hn::Load(f, p_.lambda + i));
+    const VI level = hn::Min(hn::Add(chosen.level, coarser), lastLevel());
+    const TapVector x = tapsOf(wrappedVector(hn::Load(f, p_.u + i), t_.sampler.wrapU),
+                               lookUp(f, l.width, level), lookUp(d, l.lastColumn, level), chosen.linear);
+    const TapVector y = tapsOf(wrappedVector(hn::Load(f, p_.v + i), t_.sampler.wrapV),
+                               lookUp(f, l.height, level), lookUp(d, l.lastRow, level), chosen.linear);
+    const VI stride = lookUp(d, l.stride, level);
+    const VI upper = hn::Add(hn::Add(lookUp(d, l.origin, level), hn::Mul(y.texel, stride)), x.texel);
+    hn::Store(upper, d, p_.upper + i);
+    hn::Store(hn::Add(upper, stride), d, p_.lower + i);
+    hn::Store(x.share, f, p_.shareX + i);
+    hn::Store(y.share, f, p_.shareY + i);
+  }
+
+  // sampleLevel() of texel.h.
+  HWY_INLINE Color texelAt(std::size_t i) const {
+    const F f;
+    const VF shareX = hn::Load(f, p_.shareX + i), shareY = hn::Load(f, p_.shareY + i);
+    const Color a = alongRow(fetchPairs(t_.texels.data(), p_.upper + i), shareX);
+    const Color b = alongRow(fetchPairs(t_.texels.data(), p_.lower + i), shareX);
+    const auto channel = [&](VF from, VF to) HWY_ATTR {
+      return hn::Mul(hn::Add(from, hn::Mul(hn::Sub(to, from), shareY)), hn::Set(f, 1.0F / 65535.0F));
+    };
+    return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
+  }
+
+  // Between the level of each point and the next.
+  HWY_INLINE Color mixed(std::size_t i, const Color& coarse) const {
+    const I d;
+    const F f;
+    const VF lambda = hn::Load(f, p_.lambda + i);
+    const Chosen chosen = chosenAt(lambda);
+    const MF between = hn::And(chosen.smaller, hn::RebindMask(f, hn::Lt(chosen.level, lastLevel())));
+    const VF share = hn::Sub(lambda, hn::ConvertTo(f, chosen.level));
+    const auto mix = [&](int k, VF other) HWY_ATTR {
+      const VF fine = hn::Load(f, p_.fine[k] + i);
+      return hn::IfThenElse(between, hn::Add(fine, hn::Mul(hn::Sub(other, fine), share)), fine);
+    };
+    return {mix(0, coarse.r), mix(1, coarse.g), mix(2, coarse.b)};
+  }
+
+  const Texture::Data& t_;
+  TextureBatch& p_;
+  bool nearestMip_, oneLevel_, minifiesLinearly_;
+};
 #endif
 
 }  // namespace HWY_NAMESPACE

@@ -47,13 +47,20 @@ void Tile::begin(const FrameContext& c, std::size_t index) {
   surfaces.clear();
   for (const std::uint32_t item : clusters)
     surfaces.push_back(surfaceOf(c.front.cluster(item).batch, c.front.cluster(item).cluster));
-  plainMaterial = loose.empty() && !surfaces.empty() ? surfaces[0].material : nullptr;
-  for (const Surface& s : surfaces) {
-    const Material& m = *s.material;
-    const bool textured =
-        m.baseColorTexture != nullptr || m.normalTexture != nullptr || m.emissiveTexture != nullptr;
-    if (&m != plainMaterial || s.hasColors || textured) plainMaterial = nullptr;
-  }
+  setSoleMaterial();
+}
+
+void Tile::setSoleMaterial() {
+  plainMaterial = texturedMaterial = nullptr;
+  if (!loose.empty() || surfaces.empty()) return;
+  const Material& m = *surfaces[0].material;
+  for (const Surface& s : surfaces)
+    if (s.material != &m || s.hasColors) return;
+  if (m.normalTexture != nullptr || m.emissiveTexture != nullptr) return;
+  if (m.baseColorTexture == nullptr)
+    plainMaterial = &m;
+  else if (m.alphaMode != AlphaMode::kMask)
+    texturedMaterial = &m;
 }
 
 void Tile::clear(std::uint64_t cells) {
@@ -134,7 +141,8 @@ std::uint64_t Tile::orderOf(const Record& record) const {
 
 void Tile::levelMemory(std::vector<Tile>& tiles) {
   levelCapacity(tiles, &Tile::depth, &Tile::ids, &Tile::centers, &Tile::records, &Tile::centerEdges,
-                &Tile::attributes, &Tile::surfaces, &Tile::blocks, &Tile::colors, &Tile::isBlended);
+                &Tile::texturePlanes, &Tile::attributes, &Tile::surfaces, &Tile::blocks, &Tile::colors,
+                &Tile::isBlended);
   for (std::size_t k = 0; k < 3; ++k)
     levelCapacity(tiles, [k](Tile& tile) -> std::vector<float>& { return tile.normal[k]; });
 }
@@ -142,9 +150,10 @@ void Tile::levelMemory(std::vector<Tile>& tiles) {
 std::size_t Tile::memoryBytes() const {
   return (depth.capacity() + 3 * normal[0].capacity() + centers.capacity()) * sizeof(float) +
          ids.capacity() * sizeof(std::uint32_t) + records.capacity() * sizeof(Record) +
-         centerEdges.capacity() * sizeof(CenterEdges) + blocks.capacity() * sizeof(VertexBlock) +
-         surfaces.capacity() * sizeof(Surface) + attributes.capacity() * sizeof(Attributes) +
-         colors.capacity() * sizeof(glm::vec4) + isBlended.capacity();
+         centerEdges.capacity() * sizeof(CenterEdges) + texturePlanes.capacity() * sizeof(TexturePlanes) +
+         blocks.capacity() * sizeof(VertexBlock) + surfaces.capacity() * sizeof(Surface) +
+         attributes.capacity() * sizeof(Attributes) + colors.capacity() * sizeof(glm::vec4) +
+         isBlended.capacity();
 }
 
 }  // namespace limn::raster

@@ -63,6 +63,13 @@ struct alignas(16) CenterEdges {
   std::int32_t value[4], stepX[4], stepY[4];
 };
 
+/// The planes of a record's texture coordinates times q, and the slopes of q itself.
+struct TexturePlanes {
+  float origin[2], slopeX[2], slopeY[2];
+  float slopeQ[2];      ///< along x and y; 0 in orthographic views
+  std::int32_t x0, y0;  ///< as the record's
+};
+
 /// The planes of what else materials interpolate, each value times q.
 struct Attributes {
   enum { kU, kV, kRed, kGreen, kBlue, kAlpha, kTangentX, kTangentY, kTangentZ, kCount };
@@ -136,6 +143,7 @@ class Tile {
   void reserveRecords(std::size_t count) {
     grow(records, recordCount + count);
     if (hasSeveralSamples()) grow(centerEdges, recordCount + count);
+    if (texturedMaterial != nullptr) grow(texturePlanes, recordCount + count);
   }
   bool hasSeveralSamples() const { return context->samples.size() > 1; }
   CenterEdges centerEdgesOf(const Corners& drawn) const;
@@ -173,7 +181,11 @@ class Tile {
   std::vector<Attributes> attributes;
   std::vector<Surface> surfaces;            // of the tile's clusters
   const Material* plainMaterial = nullptr;  // if all have it, without textures or vertex colours
-  std::vector<VertexBlock> blocks;          // of the tile's clusters
+  const Material* texturedMaterial =
+      nullptr;  // if all have it, with no texture but of its base colour, nor vertex colours
+  bool hasSoleMaterial() const { return plainMaterial != nullptr || texturedMaterial != nullptr; }
+  std::vector<TexturePlanes> texturePlanes;  // of records, where there is such a material
+  std::vector<VertexBlock> blocks;           // of the tile's clusters
   std::span<const std::uint32_t> clusters, loose, blended, lines;
   bool overlaid = false;  // something is blended over the tile
   std::vector<glm::vec4>
@@ -190,6 +202,7 @@ class Tile {
   static constexpr int kCellHeight = 8, kCellRows = 8;
   static constexpr std::uint64_t kFirstCells = 0x0101010101010101U;  // of all rows
   void clear(std::uint64_t cells);
+  void setSoleMaterial();
   std::uint64_t touched_ = 0;
 
   // To at least `count` elements, and to all that there is room for.
@@ -203,6 +216,9 @@ class Tile {
 
 /// Planes of texture coordinates, colours and tangents of a record; made when first asked for.
 const Attributes& attributesOf(Tile& tile, Record& record);
+/// Texture coordinates of a cluster's vertices, times q.
+void setTexcoords(const Batch& batch, const Cluster& cluster, const Material& material, bool perspective,
+                  VertexBlock& block);
 
 /// Strips are this much longer than their rows, so that what belongs to neighbours shares no set of the cache.
 inline constexpr std::size_t kStripPadding = 80;

@@ -12,6 +12,7 @@ struct VertexBlock {
   alignas(64) std::int32_t x[kClusterVertices], y[kClusterVertices];
   alignas(64) float depth[kClusterVertices];
   alignas(64) float plane[kClusterVertices][4];  ///< normal · q (x, y, z), depth
+  float texcoord[kClusterVertices][2];           ///< times q; see setTexcoords()
 };
 
 /// Box of window coordinates in sub-pixels, bounds included.

@@ -73,6 +73,8 @@ class Visibility {
     const Material& material = context_.frame.materials[cluster.material];
     tile_.clock.lap(tile_.statistics.visibilityMs);
     context_.kernels.transformCluster(batch, cluster, context_.map, tile_.blocks[entry]);
+    if (tile_.texturedMaterial != nullptr)
+      setTexcoords(batch, cluster, material, context_.map.perspective, tile_.blocks[entry]);
     tile_.clock.lap(tile_.statistics.transformMs);
     if (material.alphaMode == AlphaMode::kMask) return drawClusterScalar(tile_, entry);
     tile_.reserveRecords(kClusterTriangles);
@@ -241,7 +243,7 @@ class Visibility {
     const Corners c = cluster_.cornersOf(tag);
     const PlaneBasis basis(c);
     tile_.reserveRecords(1);
-    cluster_.setRecord(tag, basis.x1, basis.x2, basis.y1, basis.y2, tile_.records[tile_.recordCount]);
+    cluster_.prepareRecord(tile_, tag, basis.x1, basis.x2, basis.y1, basis.y2);
     const int bias = kSubpixels - 1 - tile_.sampleRange.high, low = tile_.sampleRange.low;
     const int x0 = std::max(((std::min({c.x[0], c.x[1], c.x[2]}) + bias) >> kSubpixelBits) - tile_.left, 0);
     const int y0 = std::max(((std::min({c.y[0], c.y[1], c.y[2]}) + bias) >> kSubpixelBits) - tile_.top, 0);
