@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "silhouette/edge_curves.h"
@@ -27,6 +28,8 @@ constexpr float kOwnFull = 0.15f;  // ρ
 constexpr float kOwnNone = 0.4f;
 constexpr float kEvidenceNone = 0.6f;
 constexpr float kEvidenceFull = 0.9f;
+constexpr float kRegular = 0.15f;  // of the tilts
+constexpr float kIrregular = 0.3f;
 constexpr std::size_t kEdgesPerBlock = 4096;
 
 // The angle between two vectors within 7e-5 (Abramowitz & Stegun 4.4.45): a weight, not a measurement.
@@ -80,7 +83,9 @@ void RobustEnds::findTrust(const Crew& crew) {
       if (isSmooth_[edge.point[0]] == 0 || isSmooth_[edge.point[1]] == 0) continue;
       const std::array<std::uint32_t, 2> ends = edgeVertices(mesh_, edge)[0];
       const vec3 along = unit(mesh_.positions[ends[1]] - mesh_.positions[ends[0]]);
-      sum.differences += std::fabs(dot(along, mesh_.normals[ends[0]] + mesh_.normals[ends[1]]));
+      const float hi = -dot(along, mesh_.normals[ends[0]]), hj = dot(along, mesh_.normals[ends[1]]);
+      sum.differences += std::fabs(hi - hj);
+      sum.tilts += std::fabs(hi + hj);
       sum.deviations += deviation(ends[0]) + deviation(ends[1]);
     }
   });
@@ -88,10 +93,18 @@ void RobustEnds::findTrust(const Crew& crew) {
   for (const Evidence& sum : evidence_) {
     all.deviations += sum.deviations;
     all.differences += sum.differences;
+    all.tilts += sum.tilts;
   }
+  regularity_ = regularityOf(all.differences, all.tilts);
   trust_ = 1.0f;
   if (all.deviations < kEvidenceFull * all.differences)
     trust_ = trustOf(static_cast<float>(all.deviations / all.differences));
+}
+
+// 1 where tilts differ little in comparison with their means, 0 where they scatter.
+float RobustEnds::regularityOf(double differences, double tilts) {
+  if (!(differences < kIrregular * tilts)) return 0.0f;
+  return 1.0f - smoothStep(kRegular, kIrregular, static_cast<float>(differences / tilts));
 }
 
 float RobustEnds::trustOf(float evidence) {
@@ -130,8 +143,9 @@ std::array<float, 2> RobustEnds::factors(const Edge& edge) const {
   const float length = std::sqrt(dot(e, e));
   if (!(length > 0.0f)) return {0.0f, 0.0f};
   const float hi = -dot(e, ni) / length, hj = dot(e, nj) / length;
-  const auto limited = [](float own, float other) {
-    return own == 0.0f ? 1.0f : std::clamp(kLimit * other / own, 0.0f, 1.0f);
+  const auto limited = [&](float own, float other) {
+    const float limit = own == 0.0f ? 1.0f : std::clamp(kLimit * other / own, 0.0f, 1.0f);
+    return glm::mix(limit, 1.0f, regularity_);
   };
 
   const float deviating = std::min(0.5f * (deviation(ends[0]) + deviation(ends[1])), kDeviationMost);
