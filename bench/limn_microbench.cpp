@@ -49,13 +49,15 @@ BENCHMARK(powers);
 
 void contourRoots(benchmark::State& state) {
   double b = -1.0;
-  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(silhouette::contourRoot(0.3, b += 1e-6, -0.7));
+  for ([[maybe_unused]] auto _ : state)
+    benchmark::DoNotOptimize(silhouette::contourRoot(0.3, b += 1e-6, -0.7));
 }
 BENCHMARK(contourRoots);
 
 void topology(benchmark::State& state) {
   const Ball ball(static_cast<int>(state.range(0)));
-  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(silhouette::Topology(ball.shape).edges().data());
+  for ([[maybe_unused]] auto _ : state)
+    benchmark::DoNotOptimize(silhouette::Topology(ball.shape).edges().data());
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ball.shape.triangleCount()));
 }
 BENCHMARK(topology)->Arg(2)->Arg(5)->Unit(benchmark::kMicrosecond);
