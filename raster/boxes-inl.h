@@ -109,12 +109,12 @@ struct Boxes {
     }
   }
 
-  /// First and last row of each column of a triangle, none where first is beyond last.
-  HWY_INLINE void setRows(std::size_t lane, int columns) {
+  /// First and last row of each of a triangle's `wide` columns, none where first is beyond last.
+  HWY_INLINE void setRows(std::size_t lane, int wide) {
     const I d;
     const F f;
     const VF top = hn::Zero(f), bottom = hn::Set(f, static_cast<float>(rows[lane] - 1));
-    for (int c = 0; c < columns; c += static_cast<int>(kLanes)) {
+    for (int c = 0; c < wide; c += static_cast<int>(kLanes)) {
       const VF column = hn::ConvertTo(f, hn::Add(hn::Iota(d, 0), hn::Set(d, c)));
       VF first = top, last = bottom;
       for (int k = 0; k < 3; ++k) {

@@ -211,7 +211,6 @@ class TextureSampler {
 
   // Between the level of each point and the next.
   HWY_INLINE Color mixed(std::size_t i, const Color& coarse) const {
-    const I d;
     const F f;
     const VF lambda = hn::Load(f, p_.lambda + i);
     const Chosen chosen = chosenAt(lambda);

@@ -157,8 +157,8 @@ class Visibility {
     if (!hn::AllFalse(d, sliver)) {
       alignas(64) std::int32_t tags[kLanes];
       hn::Store(tag, d, tags);
-      for (unsigned left = bitsOf(sliver); left != 0; left &= left - 1)
-        long_[longCount_++] = static_cast<std::uint32_t>(tags[std::countr_zero(left)]);
+      for (unsigned rest = bitsOf(sliver); rest != 0; rest &= rest - 1)
+        long_[longCount_++] = static_cast<std::uint32_t>(tags[std::countr_zero(rest)]);
       live = hn::AndNot(sliver, live);
     }
     const MI tiny = hn::And(atMost(hn::Sub(x.last, x.first), hn::Set(d, MicroQueue::kReach)),

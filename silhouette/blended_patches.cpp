@@ -41,7 +41,6 @@ constexpr std::size_t kClustersPerBlock = 64;
 constexpr float kFittedInside = 3.0f;
 constexpr std::size_t kEdgesPerBlock = 4096;
 constexpr std::size_t kWordsPerBlock = 64;  // of 64 triangles each
-constexpr float kThird = 1.0f / 3.0f;
 
 // What a block of triangles adds to the stream.
 struct Share {
