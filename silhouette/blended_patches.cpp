@@ -371,6 +371,7 @@ void Pass::emit() {
 }
 
 void Pass::emitEdge(const SmoothEdge& smooth) {
+  if (!smooth.bends()) return;  // the record of all sides that do not
   const Edge& edge = topology.edges()[smooth.edge];
   const vec3 &p = mesh.positions[smooth.ends[0]], &q = mesh.positions[smooth.ends[1]];
   for (std::uint32_t k = 1; k < smooth.segments; ++k) {
