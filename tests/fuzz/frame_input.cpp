@@ -22,7 +22,10 @@ class ByteReader {
     rest_ = rest_.subspan(1);
     return value;
   }
-  std::int8_t signedByte() { return static_cast<std::int8_t>(byte()); }
+  int signedByte() {
+    const int value = byte();
+    return value < 128 ? value : value - 256;
+  }
   std::int16_t signedWord() {
     const int low = byte();
     return static_cast<std::int16_t>(low | byte() << 8);
