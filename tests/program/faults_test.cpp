@@ -13,7 +13,7 @@
 namespace {
 
 using limn::test::ProgramTest;
-using limn::test::operator+;
+using limn::test::operator+;  // NOLINT(misc-unused-using-decls): it sees no use of operators
 using limn::test::Result;
 using limn::test::Running;
 using Words = std::vector<std::string>;

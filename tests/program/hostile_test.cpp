@@ -11,7 +11,7 @@ using limn::scene::test::GltfWriter;
 using limn::scene::test::json;
 using limn::test::ProgramTest;
 using limn::test::Result;
-using limn::test::operator+;
+using limn::test::operator+;  // NOLINT(misc-unused-using-decls): it sees no use of operators
 
 class Hostile : public ProgramTest {
  protected:

@@ -29,7 +29,7 @@ class ImageFile : public testing::Test {
   ~ImageFile() override { std::filesystem::remove_all(directory_); }
 
   std::string write(const std::string& name, const std::vector<std::uint8_t>& bytes) const {
-    const std::string path = directory_ / name;
+    std::string path = directory_ / name;
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     return path;

@@ -13,7 +13,7 @@
 namespace {
 
 namespace scene = limn::scene;
-using limn::test::operator+;
+using limn::test::operator+;  // NOLINT(misc-unused-using-decls): it sees no use of operators
 using limn::test::ProgramTest;
 using limn::test::Result;
 using nlohmann::json;

@@ -11,7 +11,7 @@
 namespace {
 
 using limn::test::ProgramTest;
-using limn::test::operator+;
+using limn::test::operator+;  // NOLINT(misc-unused-using-decls): it sees no use of operators
 using limn::test::Result;
 using Words = std::vector<std::string>;
 

@@ -25,7 +25,7 @@ std::string readAll(const fs::path& path) {
 
 fs::path newDirectory() {
   static std::atomic<int> count{0};
-  const fs::path path =
+  fs::path path =
       fs::temp_directory_path() / ("limn-test-" + std::to_string(::getpid()) + "-" + std::to_string(++count));
   fs::create_directories(path);
   return path;
