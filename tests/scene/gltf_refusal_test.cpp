@@ -72,7 +72,7 @@ TEST(GltfRefusal, AccessorsAndViewsBeyondTheirBytes) {
 }
 
 TEST(GltfRefusal, SparseAccessors) {
-  const auto sparse = [](int count, std::vector<std::uint8_t> indices) {
+  const auto sparse = [](int count, const std::vector<std::uint8_t>& indices) {
     return [=](GltfWriter& w) {
       const int view = w.addView(indices), values = w.addView<float>({1, 2, 3, 4, 5, 6});
       w.root["accessors"][0]["sparse"] = {{"count", count},
