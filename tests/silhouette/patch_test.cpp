@@ -145,7 +145,8 @@ TEST(EdgeCurve, FeatureFallBacks) {
   EXPECT_LT(glm::length(edgeCurve(p, q, pair(90.0), pair(90.0), {})[0] - (dot(q, line) * line - q) / 3.0f),
             1e-6f);
   // And continuous between them.
-  for (double degrees = 0.11; degrees < 180.0; degrees += 0.01) {
+  for (int hundredths = 11; hundredths < 18000; ++hundredths) {
+    const double degrees = 0.01 * hundredths;
     const vec3 step = edgeCurve(p, q, pair(degrees + 0.01), pair(90.0), {})[0] -
                       edgeCurve(p, q, pair(degrees), pair(90.0), {})[0];
     ASSERT_LT(glm::length(step), 5e-3f) << degrees;
@@ -164,8 +165,8 @@ TEST(Silhouetteness, IsAsWritten) {
   EXPECT_EQ(silhouettenessOf(0.125f, 0.25f), 0.5f);
   EXPECT_EQ(silhouettenessOf(0.3f, 0.25f), 0.0f);
   // β of (3) is sin φ sin(φ + θ), not below 0.
-  for (double phi = 0.0; phi < 180.0; phi += 7.0) {
-    for (double theta = 0.0; theta < 180.0; theta += 11.0) {
+  for (int phi = 0; phi < 180; phi += 7) {
+    for (int theta = 0; theta < 180; theta += 11) {
       const double a = phi * 3.141592653589793 / 180.0, b = theta * 3.141592653589793 / 180.0;
       const vec3 ns(0, 0, 1), nt(0.0, std::sin(b), std::cos(b));
       EXPECT_NEAR(wedgeBeta(ns, nt, static_cast<float>(std::sin(a)), static_cast<float>(std::cos(a))),
