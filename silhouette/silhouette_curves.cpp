@@ -74,7 +74,10 @@ struct SideView {
   bool back = false;  // the side runs against the edge
 
   // A position along the edge as one along the side.
-  std::size_t rank() const { return back ? edge->count + 1 - edge->rank[face] : edge->rank[face]; }
+  std::size_t rank() const {
+    LIMN_ASSERT(edge != nullptr);
+    return back ? edge->count + 1 - edge->rank[face] : edge->rank[face];
+  }
   float parameter() const { return back ? 1.0f - edge->parameter[face] : edge->parameter[face]; }
   std::uint32_t vertex(std::size_t k) const {  // k-th on the side, from 0
     const auto along = static_cast<std::uint32_t>(back ? edge->count - 1 - k : k);
