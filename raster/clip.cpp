@@ -166,9 +166,10 @@ struct Outline {
 
 }  // namespace
 
-Box boxOf(const LooseTriangle& t) {
-  return {std::min({t.x[0], t.x[1], t.x[2]}), std::min({t.y[0], t.y[1], t.y[2]}),
-          std::max({t.x[0], t.x[1], t.x[2]}), std::max({t.y[0], t.y[1], t.y[2]})};
+Box boxOf(const Corners& c) {
+  const auto [minX, maxX] = std::minmax({c.x[0], c.x[1], c.x[2]});
+  const auto [minY, maxY] = std::minmax({c.y[0], c.y[1], c.y[2]});
+  return {minX, minY, maxX, maxY};
 }
 
 void clipTriangle(const Batch& batch, const TriangleRef& ref, const ScreenMap& map,
@@ -203,7 +204,7 @@ void clipTriangle(const Batch& batch, const TriangleRef& ref, const ScreenMap& m
     for (std::size_t k = 0; k < 3; ++k) {
       const auto c = static_cast<std::size_t>(part[k]);
       const ScreenVertex& corner = outline.v[c];
-      t.x[k] = corner.x, t.y[k] = corner.y;
+      t.corners.x[k] = corner.x, t.corners.y[k] = corner.y;
       if (!t.cut) setCornerValues(whole, polygon.v[c].weights, corner, k, t);
     }
     out.push_back(t);

@@ -19,7 +19,7 @@ struct TriangleRef {
 };
 
 struct LooseTriangle {
-  std::int32_t x[3], y[3];
+  Corners corners;
   bool cut;              ///< planes are given at `anchors`, else at the corners
   Corners anchors;       ///< of positive area, within the window
   float plane[3][4];     ///< as VertexBlock::plane
@@ -27,8 +27,8 @@ struct LooseTriangle {
   TriangleRef ref;
 };
 
-/// Box of a triangle's corners.
-Box boxOf(const LooseTriangle& t);
+/// Of the three corners.
+Box boxOf(const Corners& c);
 
 /// Appends the parts of a triangle that lie between the near and the far plane and within the guard band.
 void clipTriangle(const Batch& batch, const TriangleRef& ref, const ScreenMap& map,

@@ -46,16 +46,10 @@ struct WindowBox {
   }
 };
 
-Box boxOfCorners(const Corners& c) {
-  const auto [minX, maxX] = std::minmax({c.x[0], c.x[1], c.x[2]});
-  const auto [minY, maxY] = std::minmax({c.y[0], c.y[1], c.y[2]});
-  return {minX, minY, maxX, maxY};
-}
-
 /// Pixels that are looked at to draw a triangle.
 double pixelsOf(const Corners& c, const ScreenMap& map) {
   constexpr double kTwiceAPixel = 2.0 * kSubpixels * kSubpixels;
-  const WindowBox box(boxOfCorners(c), map);
+  const WindowBox box(boxOf(c), map);
   const double area = static_cast<double>(std::abs(signedArea(c))) / kTwiceAPixel;
   return std::min(box.pixels(), area + box.width + box.height);
 }
@@ -119,11 +113,9 @@ class Estimate {
   void addLoose() {
     for (std::size_t i = 0; i < front_.looseCount(); ++i) {
       const LooseTriangle& t = front_.loose(static_cast<std::uint32_t>(i));
-      Corners c;
-      std::copy(t.x, t.x + 3, c.x);
-      std::copy(t.y, t.y + 3, c.y);
       const Cluster& cluster = batches_[t.ref.batch].set->clusters[t.ref.cluster];
-      if (isDrawn(c, t.ref.batch, cluster)) add(t.ref.batch, cluster.material, pixelsOf(c, map_));
+      if (isDrawn(t.corners, t.ref.batch, cluster))
+        add(t.ref.batch, cluster.material, pixelsOf(t.corners, map_));
     }
   }
 
@@ -135,7 +127,7 @@ class Estimate {
 
   bool isDrawn(const Corners& c, std::uint32_t batch, const Cluster& cluster) const {
     const std::int64_t area = signedArea(c);
-    const bool back = batches_[batch].mirrored ? area < 0 : area > 0;
+    const bool back = facesAway(area, batches_[batch].mirrored);
     return area != 0 && (!back || frame_.materials[cluster.material].doubleSided);
   }
 

@@ -185,7 +185,8 @@ void FrontEnd::placeLoose(const Tiling& tiling, Workers& workers) {
       if (key != range.blended.end() && key->loose == i)
         ++key;
       else
-        body(tilesOf(boxOf(range.loose[i]), tiling), static_cast<std::uint32_t>(range.firstLoose + i));
+        body(tilesOf(boxOf(range.loose[i].corners), tiling),
+             static_cast<std::uint32_t>(range.firstLoose + i));
     }
   };
   if (count > 0)
@@ -211,7 +212,7 @@ void FrontEnd::sortBlended(const Tiling& tiling, Workers& workers) {
   blendedBins_.reset(tiling);
   const auto forRange = [&](std::size_t r, const auto& body) {
     for (std::size_t i = blended_.size() * r / kRanges; i < blended_.size() * (r + 1) / kRanges; ++i)
-      body(tilesOf(boxOf(loose_[blended_[i].loose]), tiling), blended_[i].loose);
+      body(tilesOf(boxOf(loose_[blended_[i].loose].corners), tiling), blended_[i].loose);
   };
   if (!blended_.empty())
     workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {

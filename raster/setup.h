@@ -14,8 +14,7 @@ class TriangleSetup {
   bool set(const Tile& tile, Corners c, const float* const planes[3], std::uint32_t source, bool mirrored,
            bool doubleSided, const Corners* anchors = nullptr) {
     const std::int64_t area = signedArea(c);
-    // With y pointing down a triangle that is counter-clockwise in view space has a negative area.
-    const bool back = mirrored ? area < 0 : area > 0;
+    const bool back = facesAway(area, mirrored);
     if (area == 0 || (back && !doubleSided)) return false;
     const float* ordered[3] = {planes[0], planes[1], planes[2]};
     if (area < 0) {
@@ -89,12 +88,9 @@ inline bool setLoose(const Tile& tile, std::uint32_t item, TriangleSetup& setup)
   const FrameContext& context = *tile.context;
   const LooseTriangle& t = context.front.loose(item);
   const Batch& batch = context.batches[t.ref.batch];
-  Corners corners;
-  std::copy(t.x, t.x + 3, corners.x);
-  std::copy(t.y, t.y + 3, corners.y);
   const float* const planes[3] = {t.plane[0], t.plane[1], t.plane[2]};
   const Material& m = context.frame.materials[batch.set->clusters[t.ref.cluster].material];
-  return setup.set(tile, corners, planes, Record::kLoose | item, batch.mirrored, m.doubleSided,
+  return setup.set(tile, t.corners, planes, Record::kLoose | item, batch.mirrored, m.doubleSided,
                    t.cut ? &t.anchors : nullptr);
 }
 

@@ -95,9 +95,7 @@ TriangleRef Tile::refOf(const Record& record) const {
 Corners Tile::cornersOf(const Record& record, std::array<int, 3>& order) const {
   Corners c;
   if ((record.source & Record::kLoose) != 0) {
-    const LooseTriangle& t = context->front.loose(record.source & ~Record::kLoose);
-    std::copy(t.x, t.x + 3, c.x);
-    std::copy(t.y, t.y + 3, c.y);
+    c = context->front.loose(record.source & ~Record::kLoose).corners;
   } else {
     const TriangleRef ref = refOf(record);
     const ClusterSet& set = *context->batches[ref.batch].set;

@@ -25,6 +25,11 @@ inline std::int64_t signedArea(const Corners& c) {
          static_cast<std::int64_t>(c.x[2] - c.x[0]) * (c.y[1] - c.y[0]);
 }
 
+/// Of a triangle's signed area: with y pointing down what is counter-clockwise in view space has a negative one.
+inline bool facesAway(std::int64_t area, bool mirrored) {
+  return mirrored ? area < 0 : area > 0;
+}
+
 /// E(x, y) of the edge from (ax, ay) to (bx, by): >= 0 inside, the top-left rule included as a bias of -1.
 struct Edge {
   std::int32_t ax, ay, dx, dy, bias;

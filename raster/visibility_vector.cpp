@@ -223,7 +223,7 @@ class Visibility {
       const auto triangle = static_cast<std::int32_t>(t + i);
       const Corners c = cluster_.cornersOf(static_cast<std::uint32_t>(triangle));
       const std::int64_t area = signedArea(c);
-      const bool back = cluster_.batch->mirrored ? area < 0 : area > 0;
+      const bool back = facesAway(area, cluster_.batch->mirrored);
       if (area == 0 || (back && !doubleSided)) continue;
       countFirst(c);
       long_[longCount_++] =

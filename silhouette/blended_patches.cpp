@@ -353,8 +353,9 @@ void Pass::place() {
 }
 
 void Pass::emit() {
-  crew.forBlocks(scratch.smooth.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) emitEdge(scratch.smooth[k]);
+  const std::span<const SmoothEdge> bending = std::span(scratch.smooth).subspan(1);
+  crew.forBlocks(bending.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (const SmoothEdge& smooth : bending.subspan(begin, end - begin)) emitEdge(smooth);
   });
   crew.forBlocks(stream.replaced.size(), kWordsPerBlock, [&](std::size_t begin, std::size_t end) {
     const Share& before = scratch.shares[begin / kWordsPerBlock];
@@ -371,7 +372,6 @@ void Pass::emit() {
 }
 
 void Pass::emitEdge(const SmoothEdge& smooth) {
-  if (!smooth.bends()) return;  // the record of all sides that do not
   const Edge& edge = topology.edges()[smooth.edge];
   const vec3 &p = mesh.positions[smooth.ends[0]], &q = mesh.positions[smooth.ends[1]];
   for (std::uint32_t k = 1; k < smooth.segments; ++k) {

@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "silhouette/edge_curves.h"
+
 namespace limn::silhouette {
 namespace {
 
@@ -16,21 +18,16 @@ constexpr float kFullConcavity =
 constexpr float kFullNearness = 0.25f;
 constexpr float kFullAgreement = 0.2f;  // ⟨R̂, N_i⟩ below which a plane counts less
 
-float smoothStep(float high, float x) {
-  const float t = std::clamp(x / high, 0.0f, 1.0f);
-  return t * t * (3.0f - 2.0f * t);
-}
-
 }  // namespace
 
 float concavity(const vec3& chord, const vec3& n1, const vec3& n2) {
   const float length = glm::length(chord);
   const float least = std::min(dot(n1, chord), -dot(n2, chord));
-  return least > 0.0f ? smoothStep(kFullConcavity, least / length) : 0.0f;
+  return least > 0.0f ? smoothStep(0.0f, kFullConcavity, least / length) : 0.0f;
 }
 
 float Blocking::nearnessWeight(float nearness) {
-  return smoothStep(kFullNearness, nearness);
+  return smoothStep(0.0f, kFullNearness, nearness);
 }
 
 void Blocking::prepare(const Mesh& mesh, const Topology& topology) {
@@ -67,7 +64,8 @@ vec3 Blocking::displacement(const vec3& place, std::span<const BlockingPlane> pl
     const float agreement = dot(direction, plane.normal);
     if (agreement <= 0.0f) continue;
     const float height = dot(place - plane.middle, plane.normal);
-    deepest = std::max(deepest, plane.weight * smoothStep(kFullAgreement, agreement) * height / agreement);
+    deepest =
+        std::max(deepest, plane.weight * smoothStep(0.0f, kFullAgreement, agreement) * height / agreement);
   }
   return -std::min(deepest, reach_[planes[0].point]) * direction;
 }

@@ -41,11 +41,8 @@ CurveOffsets segmentCurve(const SegmentEnd& a, const SegmentEnd& b, bool robust)
   if (!robust) return offsets;
   const glm::vec3 chord = b.place - a.place;
   const float tiltA = -glm::dot(chord, a.normal), tiltB = glm::dot(chord, b.normal);
-  const auto limited = [](float own, float other) {
-    return own == 0.0f ? 1.0f : std::clamp(kLimit * other / own, 0.0f, 1.0f);
-  };
-  offsets[0] *= a.trust * limited(tiltA, tiltB);
-  offsets[1] *= b.trust * limited(tiltB, tiltA);
+  offsets[0] *= a.trust * endLimit(kLimit, tiltA, tiltB);
+  offsets[1] *= b.trust * endLimit(kLimit, tiltB, tiltA);
   return offsets;
 }
 

@@ -144,8 +144,7 @@ std::array<float, 2> RobustEnds::factors(const Edge& edge) const {
   if (!(length > 0.0f)) return {0.0f, 0.0f};
   const float hi = -dot(e, ni) / length, hj = dot(e, nj) / length;
   const auto limited = [&](float own, float other) {
-    const float limit = own == 0.0f ? 1.0f : std::clamp(kLimit * other / own, 0.0f, 1.0f);
-    return glm::mix(limit, 1.0f, regularity_);
+    return glm::mix(endLimit(kLimit, own, other), 1.0f, regularity_);
   };
 
   const float deviating = std::min(0.5f * (deviation(ends[0]) + deviation(ends[1])), kDeviationMost);

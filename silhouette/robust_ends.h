@@ -38,6 +38,7 @@
 // are no more than the means of their own faces, are left nearly flat.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -45,6 +46,11 @@
 #include "silhouette/method.h"
 
 namespace limn::silhouette {
+
+/// The limiter min(1, k h_j / h_i), not below 0, of the end whose tilt is `own`.
+inline float endLimit(float k, float own, float other) {
+  return own == 0.0f ? 1.0f : std::clamp(k * other / own, 0.0f, 1.0f);
+}
 
 class RobustEnds {
  public:

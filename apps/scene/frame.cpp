@@ -6,7 +6,6 @@
 #include <cmath>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,8 +20,6 @@ namespace limn::scene {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -306,7 +303,7 @@ void FrameDrawer::State::refineWithinLimit() {
   double coarse = 0.0;
   for (const InstanceResources& resources : instances)
     if (resources.visible) coarse += static_cast<double>(resources.shape.triangleCount());
-  if (scene.refinedLimit < kEndless)
+  if (std::isfinite(scene.refinedLimit))
     parameters.mostPerTriangle = static_cast<std::size_t>(scene.refinedLimit / std::max(coarse, 1.0));
   try {
     silhouette::refineAll(tasks, parameters, workers);
