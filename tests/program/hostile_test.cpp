@@ -25,9 +25,10 @@ class Hostile : public ProgramTest {
     if (message != nullptr) {
       EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
     }
-#ifndef LIMN_SANITIZED
+#if defined(__OPTIMIZE__) && !defined(LIMN_SANITIZED)
     EXPECT_LE(result.peakBytes, 256U << 20) << name;
-    EXPECT_LE(result.seconds, 5.0) << name;
+    // Five seconds of two processors, whatever else the machine does.
+    EXPECT_LE(result.processorSeconds, 10.0) << name;
 #endif
   }
   void expect(const std::string& name, const GltfWriter& writer, const char* message,

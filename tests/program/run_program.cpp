@@ -36,11 +36,15 @@ void redirect(const fs::path& file, int flags, int descriptor) {
   if (opened < 0 || ::dup2(opened, descriptor) < 0) ::_exit(126);
 }
 
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
 }  // namespace
 
 Running::Running(const fs::path& directory, const std::vector<std::string>& arguments,
                  const std::string& input, unsigned long fileSizeLimit)
-    : streams_(newDirectory()), start_(std::chrono::steady_clock::now()) {
+    : streams_(newDirectory()) {
   std::ofstream(streams_ / "in", std::ios::binary) << input;
   std::vector<const char*> words = {LIMN_PROGRAM};
   for (const std::string& argument : arguments) words.push_back(argument.c_str());
@@ -80,7 +84,7 @@ Result Running::wait() {
   process_ = -1;
   Result result;
   result.peakBytes = static_cast<std::size_t>(usage.ru_maxrss) << 10;
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  result.processorSeconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   result.out = readAll(streams_ / "out");
   result.err = readAll(streams_ / "err");

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <sys/types.h>
 
-#include <chrono>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -15,7 +14,7 @@ namespace limn::test {
 struct Result {
   int status = -1;  ///< exit status, or -n when ended by signal n
   std::size_t peakBytes = 0;
-  double seconds = 0;
+  double processorSeconds = 0;  ///< of all threads
   std::string out, err;
 };
 
@@ -35,7 +34,6 @@ class Running {
  private:
   std::filesystem::path streams_;
   pid_t process_ = -1;
-  std::chrono::steady_clock::time_point start_;
 };
 
 class ProgramTest : public testing::Test {
