@@ -1,15 +1,20 @@
 // A fine mesh → outline weights → fewer triangles → fitted patches → guarded → stored numbers.
 #include "apps/coarsen/coarsen.h"
 
+#include <meshoptimizer.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
+#include <span>
 
 #include "apps/coarsen/fit.h"
 #include "apps/coarsen/outline_weight.h"
 #include "apps/coarsen/simplify.h"
 #include "apps/coarsen/store.h"
 #include "raster/base/check.h"
+#include "raster/cluster.h"
 
 namespace limn::coarsen {
 namespace {
@@ -73,6 +78,24 @@ std::vector<Index> partOfTriangles(const scene::Mesh& mesh) {
   return parts;
 }
 
+/// Orders triangles so that those that follow each other make round clusters, which a renderer transforms and culls at
+/// once. A simplified mesh comes in the fine one's order, of which too little is left.
+void orderIntoClusters(std::span<Index> indices, const std::vector<vec3>& positions) {
+  constexpr float kConeWeight = 0.0f;  // flat clusters instead of round ones measured worse
+  const std::size_t most =
+      meshopt_buildMeshletsBound(indices.size(), raster::kClusterVertices, raster::kClusterTriangles);
+  std::vector<meshopt_Meshlet> clusters(most);
+  std::vector<Index> vertices(most * raster::kClusterVertices);
+  std::vector<std::uint8_t> corners(most * 3 * raster::kClusterTriangles);
+  clusters.resize(meshopt_buildMeshlets(clusters.data(), vertices.data(), corners.data(), indices.data(),
+                                        indices.size(), &positions[0].x, positions.size(), sizeof(vec3),
+                                        raster::kClusterVertices, raster::kClusterTriangles, kConeWeight));
+  auto next = indices.begin();
+  for (const meshopt_Meshlet& cluster : clusters)
+    for (unsigned corner = 0; corner < 3 * cluster.triangle_count; ++corner)
+      *next++ = vertices[cluster.vertex_offset + corners[cluster.triangle_offset + corner]];
+}
+
 /// The coarse mesh with the source's parts, vertices in the order of their first use.
 scene::Mesh assemble(const scene::Mesh& fine, const std::vector<Index>& partOf,
                      const Simplified& simplified) {
@@ -81,24 +104,30 @@ scene::Mesh assemble(const scene::Mesh& fine, const std::vector<Index>& partOf,
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
     return partOf[simplified.triangles[a]] < partOf[simplified.triangles[b]];
   });
-  std::vector<Index> vertices, indices, number(fine.positions.size(), kNone);
-  for (const Index t : order)
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const Index vertex = simplified.indices[3 * t + corner];
-      if (number[vertex] == kNone) {
-        number[vertex] = static_cast<Index>(vertices.size());
-        vertices.push_back(vertex);
-      }
-      indices.push_back(number[vertex]);
-    }
-  scene::Mesh out = subset(fine, vertices);
-  out.indices = std::move(indices);
+  std::vector<raster::Part> parts;
+  std::vector<Index> indices;
   for (Index k = 0; k < order.size(); ++k) {
     const raster::Part& source = fine.parts[partOf[simplified.triangles[order[k]]]];
-    if (out.parts.empty() || out.parts.back().material != source.material)
-      out.parts.push_back({k, 0, source.material});
-    ++out.parts.back().triangleCount;
+    if (parts.empty() || parts.back().material != source.material) parts.push_back({k, 0, source.material});
+    ++parts.back().triangleCount;
+    for (std::size_t corner = 0; corner < 3; ++corner)
+      indices.push_back(simplified.indices[3 * order[k] + corner]);
   }
+  for (const raster::Part& part : parts)
+    orderIntoClusters(
+        std::span(indices).subspan(3 * std::size_t{part.firstTriangle}, 3 * std::size_t{part.triangleCount}),
+        fine.positions);
+  std::vector<Index> vertices, number(fine.positions.size(), kNone);
+  for (Index& vertex : indices) {
+    if (number[vertex] == kNone) {
+      number[vertex] = static_cast<Index>(vertices.size());
+      vertices.push_back(vertex);
+    }
+    vertex = number[vertex];
+  }
+  scene::Mesh out = subset(fine, vertices);
+  out.indices = std::move(indices);
+  out.parts = std::move(parts);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "apps/coarsen/surface.h"
+#include "raster/cluster.h"
 #include "silhouette/patch.h"
 #include "silhouette/refine.h"
 #include "tests/coarsen/fine_models.h"
@@ -109,6 +110,18 @@ TEST(Coarsen, KnotStaysClosedAndNear) {
   for (const vec3& point : patchPoints(coarse))
     farthest = std::max(farthest, std::sqrt(closest.find(glm::dvec3(point))->distance2));
   EXPECT_LE(farthest, report.guard.limit * 1.02);  // the rest is rounding to bytes
+}
+
+TEST(Coarsen, NeighboursFollowEachOther) {
+  const scene::Mesh coarse = coarseOf(builtinMesh("icosphere:4"), 500);
+  raster::ClusterSet set;
+  raster::VertexNumbers numbers;
+  numbers.reserve(coarse.positions.size());
+  raster::ClusterCutter cutter(set, coarse.indices.size() / 3, numbers);
+  cutter.add(coarse.indices, 0);
+  cutter.finish();
+  // Of the 64 vertices of a round cluster about 28 lie on its border, and another cluster has them too.
+  EXPECT_LT(static_cast<double>(set.vertices.size()), 1.35 * static_cast<double>(coarse.positions.size()));
 }
 
 TEST(Coarsen, SameBytesForAnyNumberOfThreads) {
