@@ -44,7 +44,15 @@ constexpr std::size_t kWordsPerBlock = 64;  // of 64 triangles each
 
 // What a block of triangles adds to the stream.
 struct Share {
-  std::uint32_t curved = 0, vertices = 0, triangles = 0;
+  std::size_t curved = 0;
+  StreamSize size;
+
+  Share& operator+=(const Share& other) {
+    curved += other.curved;
+    size.vertices += other.size.vertices;
+    size.triangles += other.size.triangles;
+    return *this;
+  }
 };
 
 struct Scratch {
@@ -78,6 +86,7 @@ struct Pass {
   StreamWriter writer;
 
   void run();
+  void forgetRecords();
   void classify();
   void measureEdges();
   void describe(std::size_t cluster, std::uint32_t record, CurveBatch& batch);
@@ -116,6 +125,7 @@ struct Pass {
 
 void Pass::run() {
   const auto start = std::chrono::steady_clock::now();
+  forgetRecords();
   classify();
   report.classifyMs =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -123,7 +133,12 @@ void Pass::run() {
   listCandidates();
   place();
   emit();
-  for (const SmoothEdge& smooth : std::span(scratch.smooth).subspan(1)) scratch.recordOf[smooth.edge] = 0;
+}
+
+// Those of the last refinement, which may have ended with an exception.
+void Pass::forgetRecords() {
+  for (const SmoothEdge& smooth : scratch.smooth)
+    if (smooth.bends()) scratch.recordOf[smooth.edge] = 0;
 }
 
 // Lists the edges that bend visibly, in the order of the clusters, and marks their triangles as candidates.
@@ -321,8 +336,8 @@ Share Pass::decide(std::size_t word) {
     if (pattern.steps == 1) continue;
     stream.replaced[word] |= std::uint64_t{1} << (triangle % 64);
     ++share.curved;
-    share.vertices += pattern.vertexCount();
-    share.triangles += pattern.triangleCount();
+    share.size.vertices += pattern.vertexCount();
+    share.size.triangles += pattern.triangleCount();
   }
   return share;
 }
@@ -332,24 +347,18 @@ void Pass::place() {
   const std::size_t words = stream.replaced.size(), blocks = (words + kWordsPerBlock - 1) / kWordsPerBlock;
   scratch.shares.assign(blocks + 1, {});
   for (SmoothEdge& smooth : scratch.smooth) {  // the first has no vertices
-    smooth.firstVertex = scratch.shares[0].vertices;
-    scratch.shares[0].vertices += smooth.vertexCount();
+    smooth.firstVertex = static_cast<std::uint32_t>(scratch.shares[0].size.vertices);
+    scratch.shares[0].size.vertices += smooth.vertexCount();
   }
   crew.forBlocks(words, kWordsPerBlock, [&](std::size_t begin, std::size_t end) {
     Share& sum = scratch.shares[begin / kWordsPerBlock + 1];
-    for (std::size_t word = begin; word < end; ++word) {
-      const Share share = decide(word);
-      sum = {sum.curved + share.curved, sum.vertices + share.vertices, sum.triangles + share.triangles};
-    }
+    for (std::size_t word = begin; word < end; ++word) sum += decide(word);
   });
-  for (std::size_t block = 1; block <= blocks; ++block) {
-    const Share &before = scratch.shares[block - 1], &own = scratch.shares[block];
-    scratch.shares[block] = {before.curved + own.curved, before.vertices + own.vertices,
-                             before.triangles + own.triangles};
-  }
-  const Share all = scratch.shares[blocks];
+  for (std::size_t block = 1; block <= blocks; ++block) scratch.shares[block] += scratch.shares[block - 1];
+  const Share& all = scratch.shares[blocks];
+  requireNumbered(mesh.positions.size(), all.size);
   report.curvedTriangles = all.curved;
-  stream.setCounts(all.vertices, all.triangles);
+  stream.setCounts(all.size.vertices, all.size.triangles);
 }
 
 void Pass::emit() {
@@ -358,8 +367,9 @@ void Pass::emit() {
     for (const SmoothEdge& smooth : bending.subspan(begin, end - begin)) emitEdge(smooth);
   });
   crew.forBlocks(stream.replaced.size(), kWordsPerBlock, [&](std::size_t begin, std::size_t end) {
-    const Share& before = scratch.shares[begin / kWordsPerBlock];
-    std::uint32_t vertex = before.vertices, face = before.triangles;
+    const StreamSize& before = scratch.shares[begin / kWordsPerBlock].size;
+    auto vertex = static_cast<std::uint32_t>(before.vertices);
+    auto face = static_cast<std::uint32_t>(before.triangles);
     for (std::size_t word = begin; word < end; ++word) {
       std::uint32_t next = scratch.firstCut[word];
       for (std::uint64_t rest = scratch.candidates[word]; rest != 0; rest &= rest - 1, ++next)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -40,6 +41,13 @@ class Crew {
   Workers* workers_ = nullptr;
   int slot_ = 0;
 };
+
+/// What is to be added to a stream. In 64 bits, which no sum over a mesh passes.
+struct StreamSize {
+  std::uint64_t vertices = 0, triangles = 0;
+};
+/// Throws TooManyTriangles where 32 bits cannot number the vertices, those of the mesh among them, or the indices.
+void requireNumbered(std::size_t meshVertices, const StreamSize& size);
 
 /// What a method needs to know of a mesh; borrowed.
 struct Source {

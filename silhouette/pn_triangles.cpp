@@ -110,11 +110,13 @@ void PnTriangles::refine(const View& view, const Parameters& parameters, const C
   report.smoothEdges = topology_.edges().size();
   if (L == 1) return stream.setCounts(0, 0);
   if (parameters.segments == 0 && std::size_t{L} * L > parameters.mostPerTriangle)
-    throw TooManyTriangles(std::size_t{L} * L);
-  const std::size_t triangles = placeOfTriangle_.back();
-  const std::size_t vertices = std::size_t{placeOfEdge_.back()} * onSide(L) + triangles * inTriangle(L);
+    throw TooManyTriangles(TooManyTriangles::Limit::kPerTriangle, std::size_t{L} * L);
+  const std::uint64_t triangles = placeOfTriangle_.back();
+  const StreamSize size{std::uint64_t{placeOfEdge_.back()} * onSide(L) + triangles * inTriangle(L),
+                        triangles * L * L};
+  requireNumbered(mesh_.positions.size(), size);
   report.curvedTriangles = triangles;
-  stream.setCounts(vertices, triangles * L * L);
+  stream.setCounts(size.vertices, size.triangles);
   StreamWriter writer(mesh_, parameters.shadingNormals, stream);
   crew.forBlocks(curves_.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) emitEdge(e, L, writer);

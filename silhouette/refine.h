@@ -62,13 +62,18 @@ struct Parameters {
   std::size_t mostPerTriangle = std::numeric_limits<std::size_t>::max();
 };
 
-/// Thrown before a stream grows beyond Parameters::mostPerTriangle.
+/// Thrown before a stream grows beyond a limit, and before memory is taken for it. The refiner remains of use.
 class TooManyTriangles : public std::runtime_error {
  public:
-  explicit TooManyTriangles(std::size_t triangles)
-      : std::runtime_error("the refinement takes too many triangles"), perTriangle(triangles) {}
+  enum class Limit {
+    kPerTriangle,  ///< Parameters::mostPerTriangle
+    kIndices  ///< what 32 bits can number: 2^32 - 2 vertices, the mesh's included, or indices of the stream
+  };
+  TooManyTriangles(Limit passed, std::uint64_t wanted)
+      : std::runtime_error("the refinement takes too many triangles"), limit(passed), triangles(wanted) {}
 
-  std::size_t perTriangle;
+  Limit limit;
+  std::uint64_t triangles;  ///< wanted: kPerTriangle of each triangle, kIndices of the stream
 };
 
 inline constexpr int kMaxSegments = 64;  ///< per edge; past it the tolerance is no longer guaranteed

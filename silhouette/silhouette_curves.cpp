@@ -100,6 +100,7 @@ struct Pass {
   StreamWriter writer;
 
   void run();
+  void forgetRecords();
   void findEdges();
   void listReplaced(std::vector<std::uint32_t>& triangles);
   void findSegments();
@@ -108,7 +109,6 @@ struct Pass {
   void placeEdges();
   void placePieces();
   void listContour();
-  void cleanUp();
 
   CrossedEdge crossedEdge(std::uint32_t e);
   Segment segmentOf(std::uint32_t triangle);
@@ -135,6 +135,7 @@ struct Pass {
 
 void Pass::run() {
   const auto start = std::chrono::steady_clock::now();
+  forgetRecords();
   stream.setCounts(0, 0);
   scratch.search.run(mesh, topology, prepared, view, parameters, crew);
   findEdges();
@@ -147,7 +148,13 @@ void Pass::run() {
   listReplaced(scratch.triangles);
   placePieces();
   if (parameters.listContour) listContour();
-  cleanUp();
+}
+
+// Those of the last refinement, which may have ended with an exception.
+void Pass::forgetRecords() {
+  for (const CrossedEdge& edge : scratch.edges) scratch.recordOf[edge.edge] = kNone;
+  for (const std::uint32_t triangle : scratch.segmentTriangles) scratch.segmentOf[triangle] = kNone;
+  for (const std::uint32_t vertex : scratch.lowered) scratch.loweredOf[vertex] = kNone;
 }
 
 // Puts fill(item)'s results into `out`, in order: count(item) of them.
@@ -301,8 +308,8 @@ void Pass::lower(std::uint32_t point, const vec3& displacement) {
     markTriangle(stream.replaced, side / 3);
     if (scratch.loweredOf[vertex] != kNone) continue;
     const auto at = static_cast<std::uint32_t>(scratch.lowered.size());
-    scratch.loweredOf[vertex] = at;
     scratch.lowered.push_back(vertex);
+    scratch.loweredOf[vertex] = at;
     stream.setCounts(at + 1, 0);
     const Origin origin{side / 3, {side % 3 == 1 ? 1.0f : 0.0f, side % 3 == 2 ? 1.0f : 0.0f}};
     writer.vertex(at, mesh.positions[vertex] + displacement, origin, kLinear);
@@ -320,12 +327,13 @@ void Pass::placeEdges() {
       settle(scratch.edges[k], curveOf(scratch.edges[k]), bridgeOf(scratch.edges[k]), open, bound, snap);
     }
   });
-  auto vertices = static_cast<std::uint32_t>(stream.positions.size());
+  StreamSize size{stream.positions.size(), 0};
   for (CrossedEdge& edge : scratch.edges) {
-    edge.firstVertex = vertices;
-    vertices += edge.vertexCount();
+    edge.firstVertex = static_cast<std::uint32_t>(size.vertices);
+    size.vertices += edge.vertexCount();
   }
-  stream.setCounts(vertices, 0);
+  requireNumbered(mesh.positions.size(), size);
+  stream.setCounts(size.vertices, 0);
   crew.forBlocks(scratch.edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) emitEdge(scratch.edges[k]);
   });
@@ -351,16 +359,18 @@ void Pass::emitEdge(const CrossedEdge& record) {
 void Pass::placePieces() {
   const std::vector<std::uint32_t>& triangles = scratch.triangles;
   scratch.slots.resize(triangles.size() + 1);
-  scratch.slots[0] = {static_cast<std::uint32_t>(stream.positions.size()), 0};
+  StreamSize size{stream.positions.size(), 0};
+  scratch.slots[0] = {static_cast<std::uint32_t>(size.vertices), 0};
   crew.forBlocks(triangles.size(), kTrianglesPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) scratch.slots[k + 1] = sizeOf(triangles[k]);
   });
-  for (std::size_t k = 1; k < scratch.slots.size(); ++k) {
-    scratch.slots[k].vertex += scratch.slots[k - 1].vertex;
-    scratch.slots[k].triangle += scratch.slots[k - 1].triangle;
+  for (Slot& slot : std::span(scratch.slots).subspan(1)) {
+    size.vertices += slot.vertex;
+    size.triangles += slot.triangle;
+    slot = {static_cast<std::uint32_t>(size.vertices), static_cast<std::uint32_t>(size.triangles)};
   }
-  const Slot all = scratch.slots.back();
-  stream.setCounts(all.vertex, all.triangle);
+  requireNumbered(mesh.positions.size(), size);
+  stream.setCounts(size.vertices, size.triangles);
   report.curvedTriangles = triangles.size();
   crew.forBlocks(triangles.size(), kTrianglesPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) emitPieces(k);
@@ -478,12 +488,6 @@ void Pass::listContour() {
       lineTo(firstNew() + v, true);
     lineTo(outline.onSide((cut.lone + 2) % 3, cut.ends[1]), true);
   }
-}
-
-void Pass::cleanUp() {
-  for (const CrossedEdge& edge : scratch.edges) scratch.recordOf[edge.edge] = kNone;
-  for (const std::uint32_t triangle : scratch.segmentTriangles) scratch.segmentOf[triangle] = kNone;
-  for (const std::uint32_t vertex : scratch.lowered) scratch.loweredOf[vertex] = kNone;
 }
 
 // Steps of a polyline with its inner vertices outside the curve (contour.h) that stays within the tolerance.

@@ -1,7 +1,7 @@
 #include <bit>
 #include <cmath>
 
-#include "silhouette/refine.h"
+#include "silhouette/method.h"
 
 namespace limn::silhouette {
 namespace {
@@ -34,6 +34,12 @@ void RefinedStream::setCounts(std::size_t vertices, std::size_t triangles) {
 void RefinedStream::clear(std::size_t meshTriangles) {
   restart(meshTriangles);
   setCounts(0, 0);
+}
+
+// The limits that Topology has for a mesh: a stream may become one.
+void requireNumbered(std::size_t meshVertices, const StreamSize& size) {
+  if (meshVertices + size.vertices >= kNone || 3 * size.triangles >= kNone)
+    throw TooManyTriangles(TooManyTriangles::Limit::kIndices, size.triangles);
 }
 
 bool RefinedStream::isConsistent(const Mesh& mesh) const {

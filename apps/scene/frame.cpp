@@ -308,8 +308,12 @@ void FrameDrawer::State::refineWithinLimit() {
   try {
     silhouette::refineAll(tasks, parameters, workers);
   } catch (const silhouette::TooManyTriangles& error) {
+    if (error.limit == silhouette::TooManyTriangles::Limit::kIndices)
+      throw InputError(scene.name + ": /meshes: one of them would become " + std::to_string(error.triangles) +
+                       " triangles, more than 32-bit indices can number; draw it with fewer --segments or a "
+                       "larger --tolerance");
     throw InputError(scene.name + ": /meshes: each of " + std::to_string(std::llround(coarse)) +
-                     " triangles would become " + std::to_string(error.perTriangle) +
+                     " triangles would become " + std::to_string(error.triangles) +
                      ", a file of this size may ask for " + std::to_string(parameters.mostPerTriangle) +
                      "; draw it with --method patches or a larger --tolerance");
   }
