@@ -28,6 +28,7 @@ float contourParameter(const View& view, const std::array<glm::vec3, 2>& p,
                        const std::array<glm::vec3, 2>& n) {
   // With D = x - o; its ends' values are those that decided visibility, so the signs are as they must be.
   const double a = -facing(view, p[0], n[0]), c = -facing(view, p[1], n[1]);
+  if (!std::isfinite(a - c)) return 0.5f;  // nor are places or normals: any will do
   if (!view.projection.perspective) return static_cast<float>(a / (a - c));
   const glm::dvec3 v1(towardsEye(view, p[0])), v2(towardsEye(view, p[1]));
   const double b = -(glm::dot(v1, glm::dvec3(n[1])) + glm::dot(v2, glm::dvec3(n[0])));

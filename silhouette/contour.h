@@ -32,8 +32,8 @@ inline float facing(const View& view, const glm::vec3& p, const glm::vec3& n) {
 /// relative error of u and of 1-u a few ulp.
 double contourRoot(double a, double b, double c);
 
-/// Where on the edge from p1 to p2, whose ends differ in visibility, the linear normal is perpendicular to the
-/// (linear) direction of view.
+/// Where on the edge from p[0] to p[1], whose ends differ in visibility, the linear normal is perpendicular to the
+/// (linear) direction of view: in [0, 1], whatever the numbers.
 float contourParameter(const View& view, const std::array<glm::vec3, 2>& p,
                        const std::array<glm::vec3, 2>& n);
 

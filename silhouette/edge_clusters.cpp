@@ -42,9 +42,10 @@ std::vector<std::uint32_t> mortonOrder(const Mesh& mesh, const Topology& topolog
     const vec3 middle = 0.5f * (mesh.positions[ends[0]] + mesh.positions[ends[1]]);
     std::uint32_t code = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const float extent = high[axis] - low[axis];
-      const float share = extent > 0.0f ? std::clamp((middle[axis] - low[axis]) / extent, 0.0f, 1.0f) : 0.0f;
-      code |= spread(static_cast<std::uint32_t>(share * 1023.0f)) << axis;
+      // No number where the mesh has no extent, or no numbers.
+      const float share = (middle[axis] - low[axis]) / (high[axis] - low[axis]);
+      const float legal = share > 0.0f ? std::min(share, 1.0f) : 0.0f;
+      code |= spread(static_cast<std::uint32_t>(legal * 1023.0f)) << axis;
     }
     keys.push_back(std::uint64_t{code} << 32 | e);
   }

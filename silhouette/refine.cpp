@@ -19,14 +19,19 @@ constexpr std::array<std::unique_ptr<MethodState> (*)(const Source&), 4> kMethod
 // one.
 constexpr std::size_t kLargeMesh = 20000;
 
+bool isBeta(float beta) {
+  return beta >= 0.0f && std::isfinite(beta);
+}
+
 void requireValid(const Parameters& p, const Topology& topology) {
   require(static_cast<std::size_t>(p.method) < kMethods.size(), "unknown method");
   require(p.tolerance >= 0.0f, "tolerance must be at least 0");
   require(p.segments >= 0 && p.segments <= kMaxSegments, "segments must be 0 to kMaxSegments");
-  require(p.beta >= 0.0f && std::isfinite(p.beta), "beta must be at least 0");
+  require(isBeta(p.beta), "beta must be at least 0");
   require(p.wedgeDegrees >= 0.0f && p.wedgeDegrees <= 180.0f, "wedgeDegrees must be 0 to 180");
   require(p.edgeBetas.empty() || p.edgeBetas.size() == topology.edges().size(),
           "one of edgeBetas for each edge");
+  require(std::all_of(p.edgeBetas.begin(), p.edgeBetas.end(), isBeta), "edgeBetas must be at least 0");
 }
 
 void requireValid(const View& view) {

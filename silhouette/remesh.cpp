@@ -68,7 +68,11 @@ class Polygon {
   }
   bool encloses(const vec2& place) const;
   float coverOf(std::size_t k) const;
+  bool isPointOfLine(std::size_t k) const {
+    return (vertices_[before(k)].lines & vertices_[k].lines & vertices_[after(k)].lines) != 0;
+  }
   std::size_t bestEar() const;
+  std::size_t anyEar() const;
 
   std::array<Vertex, 3 + 3 * kMaxSideVertices + kMaxSegments> vertices_;
   std::size_t size_ = 0;
@@ -112,16 +116,23 @@ std::size_t Polygon::bestEar() const {
   std::size_t best = size_;
   float least = std::numeric_limits<float>::infinity();
   for (std::size_t k = 0; k < size_; ++k) {
-    const Vertex &previous = vertices_[before(k)], &next = vertices_[after(k)];
-    if ((previous.lines & vertices_[k].lines & next.lines) != 0) continue;
-    const float diagonal = glm::length(next.place - previous.place);
+    if (isPointOfLine(k)) continue;
+    const float diagonal = glm::length(vertices_[after(k)].place - vertices_[before(k)].place);
     if (!(diagonal < least) || linesWithout(k) != 0) continue;
     const float cost = diagonal + kCoverCost * coverOf(k);
     if (!(cost < least)) continue;
     least = cost;
     best = k;
   }
-  return best;
+  return best < size_ ? best : anyEar();
+}
+
+// For places that are not finite.
+std::size_t Polygon::anyEar() const {
+  std::size_t k = 0;
+  while (k < size_ && (isPointOfLine(k) || linesWithout(k) != 0)) ++k;
+  LIMN_ASSERT(k < size_, size_);
+  return k;
 }
 
 void Polygon::triangulate(Pieces& pieces) {
@@ -132,7 +143,6 @@ void Polygon::triangulate(Pieces& pieces) {
   }
   while (size_ > 3) {
     const std::size_t ear = bestEar();
-    LIMN_ASSERT(ear < size_, size_);
     pieces.add(vertices_[before(ear)].index, vertices_[ear].index, vertices_[after(ear)].index);
     --size_;
     for (std::size_t k = ear; k < size_; ++k) vertices_[k] = vertices_[k + 1];

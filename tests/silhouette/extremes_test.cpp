@@ -1,10 +1,12 @@
 // Input that no good exporter writes: nothing is ever NaN, no triangle is lost.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-
+#include <limits>
+#include <random>
 #include <stdexcept>
 
 #include "shapes.h"
@@ -13,6 +15,8 @@ namespace limn::silhouette::test {
 namespace {
 
 using glm::vec3;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 std::vector<Parameters> everyMethod() {
   std::vector<Parameters> all;
@@ -121,8 +125,78 @@ TEST(Extremes, ParametersThatAreRefused) {
   refuses([](Parameters& p) { p.segments = kMaxSegments + 1; });
   refuses([](Parameters& p) { p.beta = -0.1f; });
   refuses([](Parameters& p) { p.wedgeDegrees = 181.0f; });
-  const std::vector<float> betas(3, 0.25f);
+  std::vector<float> betas(3, 0.25f);
   refuses([&](Parameters& p) { p.edgeBetas = betas; });
+  betas.assign(topology.edges().size(), 0.25f);
+  for (const float beta : {-0.1f, std::nanf(""), kInfinity}) {
+    betas.back() = beta;
+    refuses([&](Parameters& p) { p.edgeBetas = betas; });
+  }
+}
+
+TEST(Extremes, MeshesThatDoNotGoTogetherAreRefused) {
+  const Shape shape = cube(), other = icosphere(0);
+  Workers workers(1), others(1);
+  const Topology topology(shape.mesh());
+  EXPECT_THROW(Refiner(other.mesh(), topology, workers), std::invalid_argument);
+  const std::vector<FittedEnds> tooFew(3);
+  EXPECT_THROW(Refiner(shape.mesh(), topology, workers, {tooFew, {}}), std::invalid_argument);
+  Refiner refiner(shape.mesh(), topology, workers);
+  EXPECT_THROW(refiner.deform(other.mesh()), std::invalid_argument);
+  RefinedStream stream;
+  RefineTask task{&refiner, perspectiveFrom({0, 0, 5}), nullptr, {}};
+  EXPECT_THROW(refineAll({&task, 1}, {}, workers), std::invalid_argument);
+  task.stream = &stream;
+  EXPECT_THROW(refineAll({&task, 1}, {}, others), std::invalid_argument);
+  refineAll({&task, 1}, {}, workers);
+}
+
+std::vector<Parameters> everyPathOfIndices() {
+  std::vector<Parameters> all(6);
+  all[1].silhouetteness = Silhouetteness::kEdge;
+  all[2].segments = 5;
+  all[3].method = all[4].method = Method::kCurves;
+  all[3].tolerance = 0.02f;
+  all[4].segments = 3;
+  all[4].robust = false;
+  all[5].method = Method::kPn;
+  all[5].tolerance = 20.0f;
+  return all;
+}
+
+void expectIndicesInRange(const Shape& shape, const RefinedStream& stream, std::uint32_t seed) {
+  for (const std::uint32_t index : stream.indices)
+    ASSERT_LT(index, shape.positions.size() + stream.positions.size()) << "seed " << seed;
+  for (std::size_t t = 0; t < stream.triangleCount(); ++t)
+    ASSERT_TRUE(stream.isReplaced(stream.sourceTriangles[t])) << "seed " << seed;
+}
+
+// The contract excludes such numbers; a caller's mistake must not become a fault of memory.
+TEST(Extremes, NumbersThatAreNoneBreakNothing) {
+  const Shape shape = icosphere(2);
+  const Topology topology(shape.mesh());
+  Workers workers(1);
+  constexpr std::array kBad{
+      std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity, 3e38f, -3e38f, 1e30f};
+  for (std::uint32_t seed = 1; seed <= 24; ++seed) {
+    std::mt19937 random(seed);
+    Shape bad = shape;
+    for (auto* array : {&bad.positions, &bad.normals})
+      for (vec3& v : *array)
+        if (random() % 8 < seed % 4) v[static_cast<int>(random() % 3)] = kBad[random() % kBad.size()];
+    View view = perspectiveFrom({1, 2, 4});
+    if (seed % 4 == 0) view.eye = vec3(kBad[random() % kBad.size()]);
+    const Topology own(bad.mesh());
+    Refiner deformed(shape.mesh(), topology, workers), from(bad.mesh(), own, workers);
+    deformed.deform(bad.mesh());
+    for (const Parameters& parameters : everyPathOfIndices()) {
+      RefinedStream stream;
+      deformed.refine(view, parameters, stream);
+      expectIndicesInRange(bad, stream, seed);
+      from.refine(view, parameters, stream);
+      expectIndicesInRange(bad, stream, seed);
+    }
+  }
 }
 
 }  // namespace
