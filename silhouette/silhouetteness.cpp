@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "raster/base/elementary.h"
+#include "silhouette/contour.h"
 #include "silhouette/face_normal.h"
 
 namespace limn::silhouette {
@@ -14,11 +15,6 @@ using glm::dot;
 using glm::vec3;
 
 constexpr std::size_t kItemsPerBlock = 4096;
-
-// From a point towards the eye, not unit.
-vec3 toEye(const View& view, const vec3& point) {
-  return view.projection.perspective ? view.eye - point : -view.direction;
-}
 
 }  // namespace
 
@@ -49,7 +45,7 @@ void EdgeTest::prepare(const Mesh& mesh, const Topology& topology, const Paramet
 // (1). At the edge's midpoint the view vector is zero, so is f, and α = 1.
 float EdgeTest::byEdge(const View& view, const Edge& edge) const {
   const std::array<std::uint32_t, 2> ends = edgeVertices(mesh_, edge)[0];
-  const vec3 v = toEye(view, 0.5f * (mesh_.positions[ends[0]] + mesh_.positions[ends[1]]));
+  const vec3 v = towardsEye(view, 0.5f * (mesh_.positions[ends[0]] + mesh_.positions[ends[1]]));
   const float length2 = dot(v, v);
   const float product =
       dot(v, faceNormals_[edge.faces[0].triangle]) * dot(v, faceNormals_[edge.faces[1].triangle]);
@@ -59,7 +55,7 @@ float EdgeTest::byEdge(const View& view, const Edge& edge) const {
 EdgeFacings EdgeTest::facings(const View& view, const Edge& edge) const {
   const auto at = [&](const Side& face, std::uint32_t corner) {
     const std::uint32_t vertex = mesh_.indices[3 * face.triangle + (face.side + corner) % 3];
-    const vec3 v = toEye(view, mesh_.positions[vertex]);
+    const vec3 v = towardsEye(view, mesh_.positions[vertex]);
     const float length2 = dot(v, v);
     return length2 > 0.0f ? dot(v, mesh_.normals[vertex]) / std::sqrt(length2) : 0.0f;
   };
