@@ -16,7 +16,7 @@ struct EdgeBlock {
   const float* facings;
   std::size_t facingCount;  ///< of facings; room for whole vectors of 16
   const float* betas;
-  const float* bulges;  ///< what the edge may rise at α = 1
+  const float* bulges;  ///< the most that curve or patches rise above the edge at α = 1, in model units
 };
 
 /// α of the 64 edges by crossingSilhouetteness or contourSilhouetteness; returns bit i set where α > 0 and

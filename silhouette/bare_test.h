@@ -27,8 +27,8 @@ class BareTest {
  public:
   static constexpr std::size_t kPlaces = 2;
 
-  /// What the patch adds to what is spanned, at each place. `divided` has bit k for side k; for three the other segment
-  /// counts must be 2.
+  /// What the patch adds to what is spanned, at each place. `divided` has bit k where side k is divided; with all three
+  /// divided, each must have two segments.
   static std::array<glm::vec3, kPlaces> differences(std::uint32_t divided,
                                                     const std::array<BentSide, 3>& sides,
                                                     bool wholeFromContour, const glm::vec3& fittedCenter) {

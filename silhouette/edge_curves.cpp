@@ -12,7 +12,7 @@ using glm::vec3;
 
 constexpr std::size_t kEdgesPerBlock = 2048;
 
-// Scales a projected tangent, whose length is |e| cos θ, to that of a circular arc, 2 |e| / (1 + cos θ): (L).
+// Scales a projected tangent, whose length is |e| cos θ, to that of a circular arc, 2 |e| / (1 + cos θ).
 // Steeper than 60 degrees the factor stays what it is there, so that the tangent vanishes with its projection
 // instead of keeping its length while losing its direction.
 float circularFactor(float cosine) {

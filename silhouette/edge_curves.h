@@ -1,9 +1,9 @@
 // The smooth curve of every edge: view-independent, computed once for a rigid mesh and once per frame for a
 // moving one.
 //
-// Based on: C. Dyken, M. Reimers, "Real-time linear silhouette enhancement", 2004, (4)-(8); W. Wang et al.,
-// "Silhouette Smoothing for Real-Time Rendering of Mesh Surfaces", equation (L), for the circular tangent
-// length; M. Sabin's geodesic-like ends as quoted by the former. Differs in: a curve is kept as what it adds
+// Based on: C. Dyken, M. Reimers, "Real-time linear silhouette enhancement", 2004, (4)-(8); L. Wang et al.,
+// "Silhouette Smoothing for Real-Time Rendering of Mesh Surfaces", for the length of the circular tangent at an angle θ to
+// the edge e, 2 |e| / (1 + cos θ); M. Sabin's geodesic-like ends as quoted by the former. Differs in: a curve is kept as what it adds
 // to the straight edge, d_ij = c_ij - l_ij, which is exactly 0 where the normals are orthogonal to the edge
 // (linear precision to the last bit) and loses no digits far from the origin.
 #pragma once

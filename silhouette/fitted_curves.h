@@ -13,8 +13,8 @@
 // (7), so a curve bends with the normals when a joint does, and flattens with them under a non-uniform scale.
 // The centre is
 //
-//     b111 = its value in the patch without it + x (p_1 - p_0) + y (p_2 - p_0) + z N / sqrt |N|,  N = (p_1 -
-//     p_0) × (p_2 - p_0)   (F2)
+//     b111 = its value in the patch without it + x (p_1 - p_0) + y (p_2 - p_0) + z N / √|N|,                  (F2)
+//     N = (p_1 - p_0) × (p_2 - p_0)
 //
 // Where the normals leave no direction across the edge the end is straight.
 #pragma once
@@ -34,7 +34,7 @@ namespace limn::silhouette {
 using FittedEnds = std::array<glm::vec3, 2>;
 
 /// Borrowed arrays of a mesh's fitted curves; empty where it has none. All numbers finite, |x|, |y|, |z| <=
-/// kFittedLimit.
+/// kFittedLimit: the caller's duty, nothing checks them.
 struct FittedCurves {
   std::span<const FittedEnds> edges;   ///< one per edge of the topology, at point[0] and point[1]
   std::span<const glm::vec3> centers;  ///< one per triangle, (F2)

@@ -42,8 +42,8 @@
 
 namespace limn::silhouette {
 
-/// What a view makes of a point p: linear p + origin has pixels per unit of depth twice, and the depth (positive in
-/// front).
+/// What a view makes of a point p: linear p + origin = (x, y, depth), the depth positive in front of the eye. In perspective
+/// x / depth and y / depth are pixels from the middle of the window, else x and y.
 struct PixelMap {
   /// 3/4, and a share that covers the roundings of the bound's own evaluation; in real numbers it is exact.
   static constexpr float kChordFactor = 0.75f * 1.0001f;

@@ -3,15 +3,15 @@
 //   limn::silhouette::Topology topology(mesh);                    // once, or once per change of the indices
 //   limn::silhouette::Refiner refiner(mesh, topology, workers);   // keeps what does not change from view to view
 //   refiner.refine(view, parameters, stream);                     // per frame
-//   refiner.deform(mesh)                                          // when positions and normals have changed
+//   refiner.deform(mesh);                                         // when positions and normals have changed
 //   refineAll(tasks, parameters, workers);                        // per frame, many instances at once
 //
 // The view maps the mesh's own space to pixels, so instances of one mesh that differ by a similarity
 // (rotation, uniform scale, reflection, translation) share one Refiner: one topology, one set of edge curves,
 // a view and a stream each. Tangent planes and angles do not survive a non-uniform scale: pose such an
 // instance into world space (positions by the matrix, normals by its inverse transpose; a reflection must
-// also exchange two indices of every triangle), give it a Refiner of its own and call deform() when it moves
-// against itself.
+// also exchange two indices of every triangle), give it a Refiner of its own and call deform() when it changes its
+// shape.
 #pragma once
 
 #include <cstddef>
@@ -33,9 +33,9 @@
 namespace limn::silhouette {
 
 enum class Method { kFlat, kPatches, kCurves, kPn };
-/// What tells a silhouette edge; silhouetteness.h has the formulas.
+/// What tells a silhouette edge; silhouetteness.h has the formulas, and the paper that (1) to (3) are of.
 enum class Silhouetteness {
-  kEdge,     ///< its faces: (1) of the paper
+  kEdge,     ///< its faces, (1)
   kContour,  ///< the shading normals of its faces' corners
   kCrossing  ///< where the zero set of the shading normals' facing crosses it or its faces; fitted curves take kContour
 };
@@ -45,14 +45,16 @@ enum class ShadingNormals { kLinear, kQuadratic };
 /// How to refine. The defaults are those of the program.
 struct Parameters {
   Method method = Method::kPatches;
-  float tolerance = 0.25f;           ///< guaranteed distance in pixels, >= 0; used when segments == 0
-  int segments = 0;                  ///< fixed count per edge, 1 … kMaxSegments; 0 = from the tolerance
-  float beta = 0.1f;                 ///< constant β of (2), >= 0; the paper has 0.25
-  float wedgeDegrees = 0;            ///< > 0: β per edge from the wedge angle φ, (3)
-  std::span<const float> edgeBetas;  ///< not empty: β of every edge of the topology, before the two above
+  float tolerance = 0.25f;  ///< guaranteed distance in pixels, >= 0; used when segments == 0
+  int segments = 0;         ///< fixed count per edge, 1 … kMaxSegments; 0 = from the tolerance
+  float beta = 0.1f;        ///< constant β of (2), >= 0; the paper has 0.25
+  float wedgeDegrees = 0;   ///< > 0: β per edge from the wedge angle φ, (3)
+  /// β of each edge instead of the two above, or empty. Finite, >= 0, in the order of Topology::edges(); borrowed until
+  /// refine() returns.
+  std::span<const float> edgeBetas;
   Silhouetteness silhouetteness = Silhouetteness::kCrossing;
   Tangents tangents = Tangents::kGeodesic;
-  bool robust = true;       ///< limited ends, methods/1 section 1.6
+  bool robust = true;       ///< doubt normals that ask for implausible curves: robust_ends.h
   bool features = true;     ///< feature edges smooth from every viewpoint
   bool boundaries = false;  ///< boundary edges likewise
   ShadingNormals shadingNormals = ShadingNormals::kLinear;
@@ -104,7 +106,7 @@ struct RefinedStream {
   /// Three per triangle. Below mesh.positions.size(): a vertex of the mesh; from there on: a new one.
   std::vector<std::uint32_t> indices;
   std::vector<std::uint32_t> sourceTriangles;  ///< one per triangle, ascending
-  std::vector<std::uint64_t> replaced;         ///< bit per mesh triangle, triangleCount/64 rounded up words
+  std::vector<std::uint64_t> replaced;         ///< bit t % 64 of word t / 64 for triangle t of the mesh
   std::vector<ContourLine> contour;            ///< of Method::kCurves, if Parameters::listContour
 
   std::size_t triangleCount() const { return indices.size() / 3; }
@@ -137,21 +139,25 @@ class Refiner {
  public:
   /// Borrows mesh arrays, topology and fitted curves for as long as it lives. Patches are drawn with the
   /// fitted curves where there are any; boundary edges are then smooth from every viewpoint.
+  /// Throws std::invalid_argument where the counts of mesh, topology and fitted curves do not agree; that the topology was
+  /// made of this mesh is the caller's duty.
   Refiner(const Mesh& mesh, const Topology& topology, Workers& workers, const FittedCurves& fitted = {});
   ~Refiner();
   Refiner(Refiner&&) noexcept;
   Refiner& operator=(Refiner&&) noexcept;
 
   /// New positions and normals, same counts and indices. What depends on them is computed anew by the next
-  /// refine().
+  /// refine(). Throws std::invalid_argument for other counts; that the indices are the same is the caller's duty.
   void deform(const Mesh& mesh);
 
   /// Refines for a view. The same bits for any number of threads. Throws std::invalid_argument for parameters
-  /// outside their ranges, TooManyTriangles for what that says.
+  /// outside their ranges and for a view without pixels or near plane, TooManyTriangles for what that says; the stream then
+  /// holds nothing of use. Positions, normals and the numbers of the view are not looked at: mesh.h.
   void refine(const View& view, const Parameters& parameters, RefinedStream& stream,
               RefineReport* report = nullptr);
 
-  /// Silhouetteness α of every edge of the topology as refine() sees it; all 0 for methods that have none.
+  /// Silhouetteness α of every edge of the topology, in its order, as refine() sees it; all 0 for methods that have none.
+  /// Throws std::invalid_argument as refine().
   void silhouetteness(const View& view, const Parameters& parameters, std::vector<float>& alphas);
 
  private:
@@ -169,7 +175,8 @@ struct RefineTask {
 };
 
 /// Refines all tasks: small meshes side by side, large ones one after the other with all threads. The same
-/// bits as one refine() after another. `workers` must be those of the refiners.
+/// bits as one refine() after another. Throws what refine() does, and std::invalid_argument for a task without refiner or
+/// stream and where `workers` are not those of the refiners; the streams then hold nothing of use.
 void refineAll(std::span<RefineTask> tasks, const Parameters& parameters, Workers& workers);
 
 }  // namespace limn::silhouette

@@ -61,12 +61,14 @@ struct TopologyReport {
 class Topology {
  public:
   /// Welds vertices by position (bit for bit, -0 equals +0) and finds the edges. Normals that differ by at
-  /// most `featureDegrees` count as shared. Linear in vertices and triangles; edges are in the order of their
-  /// points. Throws std::invalid_argument for indices out of range or arrays whose lengths do not agree.
+  /// most `featureDegrees`, 0 to 180, count as shared. Linear in vertices and triangles. Throws
+  /// std::invalid_argument for indices out of range, arrays whose lengths do not agree, 2^32 - 1 or more vertices or
+  /// indices.
   explicit Topology(const Mesh& mesh, float featureDegrees = 0.1f);
 
   std::size_t pointCount() const { return pointCount_; }
   const std::vector<std::uint32_t>& points() const { return points_; }  ///< welded point of each vertex
+  /// By point[0], then point[1]; the copies of a non-manifold edge by their triangles.
   const std::vector<Edge>& edges() const { return edges_; }
   /// Edge of each side, three per triangle; kNone on degenerate triangles.
   const std::vector<std::uint32_t>& sideEdges() const { return sideEdges_; }
