@@ -81,6 +81,13 @@ TEST_F(Faults, OfInput) {
   EXPECT_TRUE(names("").empty());
 }
 
+TEST_F(Faults, OfWishesBeyondIndices) {
+  expect({"render", "builtin:torus:440:420", "--method", "pn", "--segments", "64", "-o", "a.png"}, 3,
+         "torus:440:420: /meshes: one of them would become 1513881600 triangles, more than 32-bit indices "
+         "can number; "
+         "draw it with fewer --segments or a larger --tolerance");
+}
+
 TEST_F(Faults, OfOutput) {
   const Words frame = {"render", "builtin:cone-70", "--size", "20x20"};
   expect(frame + Words{"-o", "/dev/full"}, 4, "/dev/full: could not be written: No space left");
