@@ -5,6 +5,8 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
+#include "raster/numbers.h"
+
 namespace limn::raster {
 namespace {
 
@@ -46,8 +48,7 @@ float stretchOf(const glm::mat3& m) {
 
 void setTransform(const glm::mat4& modelToView, bool perspective, Batch& batch) {
   const glm::mat3 m(modelToView);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 4; ++j) batch.toView.m[i][j] = modelToView[j][i];
+  batch.toView = Affine(modelToView);
   const glm::vec3 c{m[1].y * m[2].z - m[1].z * m[2].y, m[1].z * m[2].x - m[1].x * m[2].z,
                     m[1].x * m[2].y - m[1].y * m[2].x};
   const float determinant = (m[0].x * c.x + m[0].y * c.y) + m[0].z * c.z;
@@ -58,7 +59,7 @@ void setTransform(const glm::mat4& modelToView, bool perspective, Batch& batch) 
   if (determinant == 0.0F || !std::isfinite(determinant)) return;
   const glm::mat3 inverse = glm::inverse(m);
   batch.eye = perspective ? inverse * -glm::vec3(modelToView[3]) : inverse * glm::vec3(0.0F, 0.0F, 1.0F);
-  batch.conesHold = std::isfinite(batch.eye.x) && std::isfinite(batch.eye.y) && std::isfinite(batch.eye.z);
+  batch.conesHold = isFinite(batch.eye);
 }
 
 // The vertices of a draw, as they are this frame: the geometry's, then the stream's.

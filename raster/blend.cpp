@@ -11,13 +11,6 @@
 namespace limn::raster {
 namespace {
 
-unsigned samplesOf(const Tile& tile, std::uint32_t id, int x, int y) {
-  unsigned mask = 0;
-  for (unsigned s = 0; s < tile.context->samples.size(); ++s)
-    mask |= static_cast<unsigned>(tile.ids[tile.offset(static_cast<int>(s), x, y)] == id) << s;
-  return mask;
-}
-
 void blendPixel(Tile& tile, TriangleSetup& t, int x, int y) {
   const unsigned coverage = t.coverage(tile, x, y);
   unsigned seen = 0;
@@ -47,7 +40,7 @@ void openPixel(Tile& tile, int x, int y) {
   for (int s = 0; s < samples; ++s) {
     if (((left >> s) & 1U) == 0) continue;
     const std::uint32_t id = tile.ids[tile.offset(s, x, y)];
-    const unsigned mask = samplesOf(tile, id, x, y);
+    const unsigned mask = tile.samplesOf(id, x, y);
     left &= ~mask;
     glm::vec4 color{b.x * b.w, b.y * b.w, b.z * b.w, b.w};
     if (id != kNoRecord) {
@@ -64,8 +57,8 @@ void blendTriangles(Tile& tile) {
   for (const std::uint32_t item : tile.blended) {
     if (!setLoose(tile, item, t)) continue;
     ++tile.statistics.trianglesDrawn;
-    for (int y = t.y0; y < t.y1; ++y)
-      for (int x = t.x0; x < t.x1; ++x) blendPixel(tile, t, x, y);
+    for (int y = t.pixels.y0; y < t.pixels.y1; ++y)
+      for (int x = t.pixels.x0; x < t.pixels.x1; ++x) blendPixel(tile, t, x, y);
   }
 }
 

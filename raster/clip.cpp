@@ -10,6 +10,8 @@
 #include <array>
 #include <glm/geometric.hpp>
 
+#include "raster/numbers.h"
+
 namespace limn::raster {
 namespace {
 
@@ -166,12 +168,6 @@ struct Outline {
 
 }  // namespace
 
-Box boxOf(const Corners& c) {
-  const auto [minX, maxX] = std::minmax({c.x[0], c.x[1], c.x[2]});
-  const auto [minY, maxY] = std::minmax({c.y[0], c.y[1], c.y[2]});
-  return {minX, minY, maxX, maxY};
-}
-
 void clipTriangle(const Batch& batch, const TriangleRef& ref, const ScreenMap& map,
                   std::vector<LooseTriangle>& out) {
   const Cluster& cluster = batch.set->clusters[ref.cluster];
@@ -180,7 +176,9 @@ void clipTriangle(const Batch& batch, const TriangleRef& ref, const ScreenMap& m
   polygon.count = 3;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t i = cluster.firstVertex + batch.set->corners[k][cluster.firstTriangle + ref.triangle];
-    whole.view[k] = glm::dvec3(viewPosition(batch, i));
+    const glm::vec3 view = viewPosition(batch, i);
+    if (!isFinite(view)) return;
+    whole.view[k] = glm::dvec3(view);
     whole.normals[k] = glm::dvec3(viewNormal(batch, i));
     glm::dvec3 weights(0.0);
     weights[static_cast<int>(k)] = 1.0;

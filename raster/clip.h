@@ -2,6 +2,7 @@
 // blended ones.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
@@ -28,9 +29,14 @@ struct LooseTriangle {
 };
 
 /// Of the three corners.
-Box boxOf(const Corners& c);
+inline Box boxOf(const Corners& c) {
+  const auto [minX, maxX] = std::minmax({c.x[0], c.x[1], c.x[2]});
+  const auto [minY, maxY] = std::minmax({c.y[0], c.y[1], c.y[2]});
+  return {minX, minY, maxX, maxY};
+}
 
-/// Appends the parts of a triangle that lie between the near and the far plane and within the guard band.
+/// Appends the parts of a triangle that lie between the near and the far plane and within the guard band. A triangle
+/// with a corner that is not finite in view space has none.
 void clipTriangle(const Batch& batch, const TriangleRef& ref, const ScreenMap& map,
                   std::vector<LooseTriangle>& out);
 

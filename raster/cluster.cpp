@@ -2,13 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "raster/numbers.h"
 
 namespace limn::raster {
 namespace {
 
-float dot(const glm::vec3& a, const glm::vec3& b) {
-  return (a.x * b.x + a.y * b.y) + a.z * b.z;
-}
+// Of points that are not all finite, or too far apart: triangles are looked at one by one.
+constexpr ClusterBounds kUnbounded{.radius = std::numeric_limits<float>::infinity()};
 
 glm::vec3 point(const ClusterVertices& v, std::size_t i) {
   return {v.x[i], v.y[i], v.z[i]};
@@ -127,11 +129,13 @@ ClusterBounds boundPoints(const Cluster& cluster, const ClusterVertices& v) {
   }
   ClusterBounds bounds;
   bounds.center = low + (high - low) * 0.5F;
-  float square = 0.0F;
+  float square = 0.0F, sum = 0.0F;
   for (std::uint32_t i = 0; i < cluster.vertexCount; ++i) {
     const glm::vec3 d = point(v, cluster.firstVertex + i) - bounds.center;
     square = std::max(square, dot(d, d));
+    sum += dot(d, d);
   }
+  if (!std::isfinite(sum)) return kUnbounded;
   bounds.radius = std::sqrt(square) * 1.00001F;
   return bounds;
 }

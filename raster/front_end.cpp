@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "raster/kernels.h"
+#include "raster/numbers.h"
 
 namespace limn::raster {
 namespace {
 
 enum class Fate { kHidden, kWhole, kClip };
-
-float dot(const glm::vec3& a, const glm::vec3& b) {
-  return (a.x * b.x + a.y * b.y) + a.z * b.z;
-}
 
 // All triangles face away, by more than snapping to the grid could turn round.
 bool facesAway(const ClusterBounds& c, const Batch& batch, bool perspective) {
@@ -23,10 +21,22 @@ bool facesAway(const ClusterBounds& c, const Batch& batch, bool perspective) {
   return dot(d, c.coneAxis) >= (c.coneSine + kMargin) * std::sqrt(dot(d, d)) + c.radius;
 }
 
+// How far rounding may put two points of a cluster from where they are to each other in view space: Affine's terms can
+// be much larger than their sum.
+float roundingOf(const ClusterBounds& bounds, const Batch& batch) {
+  constexpr float kRootOfThree = 1.75F;  // and more
+  const auto most = [](float x, float y, float z) {
+    return std::max(std::max(std::fabs(x), std::fabs(y)), std::fabs(z));
+  };
+  const auto& m = batch.toView.m;
+  const float reach = most(bounds.center.x, bounds.center.y, bounds.center.z) + bounds.radius;
+  return (reach * (batch.stretch * kRootOfThree) + most(m[0][3], m[1][3], m[2][3])) * 5e-7F;
+}
+
 Fate classify(const ClusterBounds& bounds, const Batch& batch, const ScreenMap& map) {
   const glm::vec3 c = batch.toView(bounds.center.x, bounds.center.y, bounds.center.z);
   const float size = (std::fabs(c.x) + std::fabs(c.y)) + std::fabs(c.z);
-  const float r = bounds.radius * batch.stretch + size * 1e-5F;
+  const float r = bounds.radius * batch.stretch + (size * 1e-5F + roundingOf(bounds, batch));
   const float nearest = -c.z - r, farthest = -c.z + r;
   if (!(farthest >= map.nearPlane) || nearest > map.farPlane) return Fate::kHidden;
   if (!(nearest > map.nearPlane) || farthest > map.farPlane) return Fate::kClip;
@@ -78,16 +88,19 @@ void Bins::count(std::size_t range, const TileRect& rect) {
 }
 
 void Bins::allocate() {
-  std::uint32_t next = 0;
+  std::uint64_t next = 0;
   for (std::size_t tile = 0; tile < tiles_; ++tile) {
-    starts_[tile] = next;
+    const std::uint64_t first = next;
+    starts_[tile] = static_cast<std::uint32_t>(first);
     for (std::size_t range = 0; range < kRanges; ++range) {
       const std::uint32_t count = cursors_[range * tiles_ + tile];
-      cursors_[range * tiles_ + tile] = next;
+      cursors_[range * tiles_ + tile] = static_cast<std::uint32_t>(next);
       next += count;
     }
+    if (next > kMostItems || next - first > kMostOfTile)
+      throw std::length_error("the frame's clusters, triangles and lines lie in too many tiles");
   }
-  starts_[tiles_] = next;
+  starts_[tiles_] = static_cast<std::uint32_t>(next);
   if (items_.size() < next) items_.resize(next);
 }
 
@@ -101,9 +114,8 @@ std::size_t Bins::memoryBytes() const {
   return (cursors_.capacity() + starts_.capacity() + items_.capacity()) * sizeof(std::uint32_t);
 }
 
-void FrontEnd::cull(const Frame& frame, std::span<const Batch> batches, const ScreenMap& map,
-                    const Tiling& tiling, const Kernels& kernels, std::size_t r) {
-  Range& range = ranges_[r];
+void FrontEnd::cullRange(const Frame& frame, std::span<const Batch> batches, const ScreenMap& map,
+                         const Tiling& tiling, const Kernels& kernels, Range& range) {
   auto batch = std::upper_bound(batches.begin(), batches.end(), range.begin,
                                 [](std::size_t i, const Batch& b) { return i < b.firstCluster; }) -
                1;
@@ -125,7 +137,6 @@ void FrontEnd::cull(const Frame& frame, std::span<const Batch> batches, const Sc
     const TileRect rect = tilesOf(kernels.boxOfCluster(*batch, cluster, map), tiling);
     if (rect.empty()) continue;
     visible_[range.begin + range.visible++] = {b, c, rect};
-    clusterBins_.count(r, rect);
   }
 }
 
@@ -147,9 +158,8 @@ void FrontEnd::drawLoosely(const Batch& batch, std::uint32_t b, std::uint32_t c,
   }
 }
 
-void FrontEnd::run(const Frame& frame, std::span<const Batch> batches, std::size_t clusterCount,
-                   const ScreenMap& map, const Tiling& tiling, const Kernels& kernels, Workers& workers) {
-  clusterBins_.reset(tiling);
+void FrontEnd::cull(const Frame& frame, std::span<const Batch> batches, std::size_t clusterCount,
+                    const ScreenMap& map, const Tiling& tiling, const Kernels& kernels, Workers& workers) {
   if (visible_.size() < clusterCount) visible_.resize(clusterCount);
   workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
     Range& range = ranges_[r];
@@ -158,78 +168,72 @@ void FrontEnd::run(const Frame& frame, std::span<const Batch> batches, std::size
     range.visible = 0;
     range.loose.clear();
     range.blended.clear();
-    if (range.begin < range.end) cull(frame, batches, map, tiling, kernels, r);
+    if (range.begin < range.end) cullRange(frame, batches, map, tiling, kernels, range);
   });
-  clusterBins_.allocate();
-  workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
-    const Range& range = ranges_[r];
-    for (std::size_t i = range.begin; i < range.begin + range.visible; ++i)
-      clusterBins_.place(r, visible_[i].tiles, static_cast<std::uint32_t>(i));
-  });
-  placeLoose(tiling, workers);
-  sortBlended(tiling, workers);
+  gatherLoose(workers);
+  sortBlended();
 }
 
-void FrontEnd::placeLoose(const Tiling& tiling, Workers& workers) {
-  looseBins_.reset(tiling);
+void FrontEnd::gatherLoose(Workers& workers) {
   std::size_t count = 0;
   for (Range& range : ranges_) {
     range.firstLoose = count;
     count += range.loose.size();
   }
+  if (count == 0) return;
   if (loose_.size() < count) loose_.resize(count);
-  // Blended triangles are listed by sortBlended() instead.
-  const auto forUnblended = [&](const Range& range, const auto& body) {
-    auto key = range.blended.begin();
-    for (std::size_t i = 0; i < range.loose.size(); ++i) {
-      if (key != range.blended.end() && key->loose == i)
-        ++key;
-      else
-        body(tilesOf(boxOf(range.loose[i].corners), tiling),
-             static_cast<std::uint32_t>(range.firstLoose + i));
-    }
-  };
-  if (count > 0)
-    workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
-      const Range& range = ranges_[r];
-      std::copy(range.loose.begin(), range.loose.end(),
-                loose_.begin() + static_cast<std::ptrdiff_t>(range.firstLoose));
-      forUnblended(range, [&](const TileRect& rect, std::uint32_t) { looseBins_.count(r, rect); });
-    });
-  looseBins_.allocate();
-  if (count > 0)
-    workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
-      forUnblended(ranges_[r], [&](const TileRect& rect, std::uint32_t i) { looseBins_.place(r, rect, i); });
-    });
+  workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
+    const Range& range = ranges_[r];
+    std::copy(range.loose.begin(), range.loose.end(),
+              loose_.begin() + static_cast<std::ptrdiff_t>(range.firstLoose));
+  });
 }
 
-void FrontEnd::sortBlended(const Tiling& tiling, Workers& workers) {
+void FrontEnd::sortBlended() {
   blended_.clear();
   for (const Range& range : ranges_)
     for (const BlendKey& key : range.blended)
       blended_.push_back({key.depth, key.order, static_cast<std::uint32_t>(range.firstLoose + key.loose)});
   std::sort(blended_.begin(), blended_.end());
-  blendedBins_.reset(tiling);
-  const auto forRange = [&](std::size_t r, const auto& body) {
-    for (std::size_t i = blended_.size() * r / kRanges; i < blended_.size() * (r + 1) / kRanges; ++i)
-      body(tilesOf(boxOf(loose_[blended_[i].loose].corners), tiling), blended_[i].loose);
+}
+
+void FrontEnd::bin(const Tiling& tiling, Workers& workers) {
+  const std::array<Bins*, 3> all{&clusterBins_, &looseBins_, &blendedBins_};
+  const auto forRanges = [&](const auto& body) {
+    workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) { forItems(tiling, r, body); });
   };
-  if (!blended_.empty())
-    workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
-      forRange(r, [&](const TileRect& rect, std::uint32_t) { blendedBins_.count(r, rect); });
-    });
-  blendedBins_.allocate();
-  if (!blended_.empty())
-    workers.forBlocks(kRanges, 1, [&](std::size_t r, std::size_t, int) {
-      forRange(r, [&](const TileRect& rect, std::uint32_t i) { blendedBins_.place(r, rect, i); });
-    });
+  for (Bins* bins : all) bins->reset(tiling);
+  forRanges([](Bins& bins, std::size_t r, const TileRect& rect, std::size_t) { bins.count(r, rect); });
+  for (Bins* bins : all) bins->allocate();
+  forRanges([](Bins& bins, std::size_t r, const TileRect& rect, std::size_t item) {
+    bins.place(r, rect, static_cast<std::uint32_t>(item));
+  });
+}
+
+// Calls body(bins, r, tiles, item) for all that a range puts into lists.
+template <class Body>
+void FrontEnd::forItems(const Tiling& tiling, std::size_t r, const Body& body) {
+  const Range& range = ranges_[r];
+  const auto tilesOfLoose = [&](std::size_t i) { return tilesOf(boxOf(loose_[i].corners), tiling); };
+  for (std::size_t i = range.begin; i < range.begin + range.visible; ++i)
+    body(clusterBins_, r, visible_[i].tiles, i);
+  auto key = range.blended.begin();
+  for (std::size_t i = 0; i < range.loose.size(); ++i) {
+    if (key != range.blended.end() && key->loose == i)
+      ++key;  // has its place among the blended ones
+    else
+      body(looseBins_, r, tilesOfLoose(range.firstLoose + i), range.firstLoose + i);
+  }
+  for (std::size_t i = blended_.size() * r / kRanges; i < blended_.size() * (r + 1) / kRanges; ++i)
+    body(blendedBins_, r, tilesOfLoose(blended_[i].loose), blended_[i].loose);
 }
 
 std::size_t FrontEnd::memoryBytes() const {
   std::size_t bytes = visible_.capacity() * sizeof(VisibleCluster) +
-                      loose_.capacity() * sizeof(LooseTriangle) + clusterBins_.memoryBytes() +
-                      looseBins_.memoryBytes();
-  for (const Range& range : ranges_) bytes += range.loose.capacity() * sizeof(LooseTriangle);
+                      loose_.capacity() * sizeof(LooseTriangle) + blended_.capacity() * sizeof(BlendKey) +
+                      clusterBins_.memoryBytes() + looseBins_.memoryBytes() + blendedBins_.memoryBytes();
+  for (const Range& range : ranges_)
+    bytes += range.loose.capacity() * sizeof(LooseTriangle) + range.blended.capacity() * sizeof(BlendKey);
   return bytes;
 }
 

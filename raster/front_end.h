@@ -36,9 +36,13 @@ TileRect tilesOf(const Box& box, const Tiling& tiling);
 /// Lists of items by tile: counted by all ranges, then placed by all ranges.
 class Bins {
  public:
+  /// What the lists may hold; 1 GiB. Records number the clusters of a tile in 24 bits.
+  static constexpr std::uint64_t kMostItems = 1U << 28U, kMostOfTile = 1U << 24U;
+
   void reset(const Tiling& tiling);
   void count(std::size_t range, const TileRect& rect);
-  void allocate();  ///< between counting and placing
+  /// Between counting and placing. Throws std::length_error if there are too many items.
+  void allocate();
   void place(std::size_t range, const TileRect& rect, std::uint32_t item);
   std::span<const std::uint32_t> of(std::size_t tile) const {
     return {items_.data() + starts_[tile], items_.data() + starts_[tile + 1]};
@@ -60,8 +64,11 @@ struct VisibleCluster {
 
 class FrontEnd {
  public:
-  void run(const Frame& frame, std::span<const Batch> batches, std::size_t clusterCount, const ScreenMap& map,
-           const Tiling& tiling, const Kernels& kernels, Workers& workers);
+  /// Finds the clusters that may be seen and where, and cuts up those that are drawn as loose triangles.
+  void cull(const Frame& frame, std::span<const Batch> batches, std::size_t clusterCount,
+            const ScreenMap& map, const Tiling& tiling, const Kernels& kernels, Workers& workers);
+  /// Puts all that into the lists of the tiles. Apart, since a frame that is refused need not have them.
+  void bin(const Tiling& tiling, Workers& workers);
 
   const VisibleCluster& cluster(std::uint32_t item) const { return visible_[item]; }
   /// The clusters of a range that may be seen.
@@ -77,7 +84,7 @@ class FrontEnd {
 
  private:
   struct BlendKey {
-    float depth;  ///< view depth of the triangle's centre
+    float depth;  ///< three times the view depth of the triangle's centre
     std::uint64_t order;
     std::uint32_t loose;
     bool operator<(const BlendKey& other) const {
@@ -90,12 +97,14 @@ class FrontEnd {
     std::vector<LooseTriangle> loose;
     std::vector<BlendKey> blended;  ///< which of `loose` are blended
   };
-  void cull(const Frame& frame, std::span<const Batch> batches, const ScreenMap& map, const Tiling& tiling,
-            const Kernels& kernels, std::size_t r);
+  void cullRange(const Frame& frame, std::span<const Batch> batches, const ScreenMap& map,
+                 const Tiling& tiling, const Kernels& kernels, Range& range);
   void drawLoosely(const Batch& batch, std::uint32_t b, std::uint32_t c, bool blended, const ScreenMap& map,
                    Range& range);
-  void placeLoose(const Tiling& tiling, Workers& workers);
-  void sortBlended(const Tiling& tiling, Workers& workers);
+  void gatherLoose(Workers& workers);
+  void sortBlended();
+  template <class Body>
+  void forItems(const Tiling& tiling, std::size_t r, const Body& body);
 
   std::array<Range, kRanges> ranges_;
   std::vector<VisibleCluster> visible_;  // of range r at [ranges_[r].begin, + visible)

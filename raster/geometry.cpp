@@ -1,37 +1,8 @@
-#include <cmath>
-
 #include "raster/base/check.h"
 #include "raster/cluster.h"
+#include "raster/validate.h"
 
 namespace limn::raster {
-namespace {
-
-template <class T>
-bool matches(std::span<const T> optional, std::size_t count) {
-  return optional.empty() || optional.size() == count;
-}
-
-void requireValid(const Vertices& v, std::span<const std::uint32_t> indices, std::span<const Part> parts) {
-  const std::size_t vertices = v.positions.size();
-  require(v.normals.size() == vertices, "normals must be as many as positions");
-  require(matches(v.texcoords, vertices), "texcoords must be as many as positions, or none");
-  require(matches(v.colors, vertices), "colors must be as many as positions, or none");
-  require(matches(v.tangents, vertices), "tangents must be as many as positions, or none");
-  require(indices.size() % 3 == 0, "indices must be three per triangle");
-  require(vertices < 0x7fffffffU && indices.size() / 3 < 0x7fffffffU,
-          "at most 2^31 - 1 vertices and triangles");
-  for (const std::uint32_t i : indices) require(i < vertices, "index beyond the vertices");
-  for (const glm::vec3& p : v.positions)
-    require(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z), "positions must be finite");
-  std::size_t next = 0;
-  for (const Part& part : parts) {
-    require(part.firstTriangle == next, "parts must tile the triangles in order");
-    next += part.triangleCount;
-  }
-  require(next == indices.size() / 3, "parts must cover all triangles");
-}
-
-}  // namespace
 
 Geometry::Geometry(const Vertices& vertices, std::span<const std::uint32_t> indices,
                    std::span<const Part> parts, Keep keep) {
@@ -82,14 +53,6 @@ std::size_t Geometry::triangleCount() const {
 }
 std::size_t Geometry::vertexCount() const {
   return data_->vertices.positions.size();
-}
-std::size_t Geometry::memoryBytes() const {
-  const Data& d = *data_;
-  const auto& c = d.copies;
-  return c.positions.capacity() * sizeof(glm::vec3) + c.normals.capacity() * sizeof(glm::vec3) +
-         c.texcoords.capacity() * sizeof(glm::vec2) + c.colors.capacity() * sizeof(glm::vec4) +
-         c.tangents.capacity() * sizeof(glm::vec4) + d.partOfTriangle.capacity() * sizeof(std::uint32_t) +
-         d.set.memoryBytes();
 }
 
 }  // namespace limn::raster

@@ -150,10 +150,11 @@ class Lighting {
     VF x, y, z;
   };
 
-  // Where points are in view space.
+  // Where points are in view space; ScreenMap::viewDepth().
   HWY_INLINE Place placeOf(const PointBatch& p, std::size_t i) const {
     const F f;
-    const VF x = hn::Load(f, p.rayX + i), y = hn::Load(f, p.rayY + i), value = hn::Load(f, p.depth + i);
+    const VF x = hn::Load(f, p.rayX + i), y = hn::Load(f, p.rayY + i);
+    const VF value = hn::Max(hn::Load(f, p.depth + i), hn::Set(f, map_.farDepth));
     if (map_.perspective) {
       const VF depth = hn::Div(hn::Set(f, 1.0F), value);
       return {hn::Mul(x, depth), hn::Mul(y, depth), hn::Neg(depth)};

@@ -13,13 +13,10 @@
 #include <span>
 
 #include "raster/material.h"
+#include "raster/numbers.h"
 #include "raster/view.h"
 
 namespace limn::raster {
-
-inline float dot(const glm::vec3& a, const glm::vec3& b) {
-  return (a.x * b.x + a.y * b.y) + a.z * b.z;
-}
 
 /// x^n by repeated squaring, n >= 0.
 inline float power(float x, int n) {

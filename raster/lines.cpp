@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "raster/blend.h"
+#include "raster/numbers.h"
 #include "raster/tile.h"
 
 namespace limn::raster {
@@ -46,9 +47,10 @@ bool clip(const ScreenMap& map, Segment& s) {
 
 ScreenLine projected(const Lines& lines, const Affine& toView, std::size_t i, const ScreenMap& map) {
   const glm::vec3 &p = lines.points[2 * i], &q = lines.points[2 * i + 1];
-  Segment s{glm::dvec3(toView(p.x, p.y, p.z)), glm::dvec3(toView(q.x, q.y, q.z))};
+  const glm::vec3 a = toView(p.x, p.y, p.z), b = toView(q.x, q.y, q.z);
+  Segment s{glm::dvec3(a), glm::dvec3(b)};
   ScreenLine line{};
-  if (!clip(map, s)) return line;
+  if (!isFinite(a) || !isFinite(b) || !clip(map, s)) return line;
   const std::array<glm::dvec3, 2> ends{s.a, s.b};
   for (std::size_t k = 0; k < 2; ++k) {
     glm::vec3 view(ends[k]);
@@ -126,9 +128,7 @@ void LineBins::run(const Frame& frame, const ScreenMap& map, const Tiling& tilin
   if (count == 0) return;
   std::size_t first = 0;
   for (const Lines& lines : frame.lines) {
-    Affine toView;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 4; ++j) toView.m[i][j] = lines.modelToView[j][i];
+    const Affine toView(lines.modelToView);
     workers.forBlocks(lines.colors.size(), 1024, [&](std::size_t begin, std::size_t end, int) {
       for (std::size_t i = begin; i < end; ++i) lines_[first + i] = projected(lines, toView, i, map);
     });

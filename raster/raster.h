@@ -7,8 +7,12 @@
 //
 // Conventions are those of glTF 2.0 and OpenGL: right-handed, counter-clockwise front faces, column-major
 // matrices, pixel centres at half integers, top-left fill rule. Row 0 of every image is the top one. The
-// picture is the same to the last bit for any number of threads, any instruction set and any compiler (see
-// docs of Renderer::draw).
+// picture is the same to the last bit for any number of threads, any instruction set and any compiler.
+//
+// Rules are checked where that costs next to nothing next to drawing, and then broken ones throw. Where a rule below says
+// "not checked", breaking it gives a picture that is wrong there and may depend on the instruction set, nothing worse. A
+// triangle or a segment with an end that is not finite in view space, because its vertices are not or because they
+// overflow, is not drawn.
 #pragma once
 
 #include <array>
@@ -30,11 +34,15 @@ namespace limn::raster {
 
 /// Plain arrays of vertices. `positions` and `normals` have the same length; the others that length or 0.
 struct Vertices {
-  std::span<const glm::vec3> positions;  ///< model space, finite
-  std::span<const glm::vec3> normals;    ///< model space; need not be unit, only the direction counts
-  std::span<const glm::vec2> texcoords;  ///< first set; glTF convention, (0, 0) is the image's upper left
-  std::span<const glm::vec4> colors;     ///< linear RGBA factor
-  std::span<const glm::vec4> tangents;   ///< xyz as normals, w = ±1 handedness; for normal maps
+  std::span<const glm::vec3> positions;  ///< model space; a geometry's are checked to be finite
+  /// Model space; need not be unit, only the direction counts. Lengths are 0, for none, or from 1e-9 to 1e18: squares
+  /// must be floats, and a modelToView that scales unevenly shortens some. Not checked.
+  std::span<const glm::vec3> normals;
+  /// First set; glTF convention, (0, 0) is the image's upper left. From -1e6 to 1e6 with the material's transform; what
+  /// lies beyond is sampled at that end, NaN at the lower one.
+  std::span<const glm::vec2> texcoords;
+  std::span<const glm::vec4> colors;    ///< linear RGBA factor, finite; not checked
+  std::span<const glm::vec4> tangents;  ///< xyz as normals, w = ±1 handedness; for normal maps; not checked
 };
 
 /// Consecutive triangles that share a material.
@@ -52,7 +60,8 @@ class Geometry {
   enum class Keep { kCopies, kReferences };
 
   /// `indices`: three per triangle, each below vertices.positions.size(). `parts` must tile [0, triangles) in
-  /// order. Throws std::invalid_argument for anything else.
+  /// order. At most 2^31 - 2 vertices and triangles. Throws std::invalid_argument for anything else, and for positions
+  /// that are not finite.
   Geometry(const Vertices& vertices, std::span<const std::uint32_t> indices, std::span<const Part> parts,
            Keep keep = Keep::kCopies);
   ~Geometry();
@@ -61,7 +70,6 @@ class Geometry {
 
   std::size_t triangleCount() const;
   std::size_t vertexCount() const;
-  std::size_t memoryBytes() const;
 
   struct Data;
   const Data& data() const { return *data_; }
@@ -76,8 +84,8 @@ class Geometry {
 struct Stream {
   Vertices vertices;
   std::span<const std::uint32_t> indices;  ///< three per triangle
-  std::span<const std::uint32_t>
-      sourceTriangles;  ///< for each triangle, the one of the geometry that it replaces
+  /// For each triangle, the one of the geometry that it replaces, in ascending order.
+  std::span<const std::uint32_t> sourceTriangles;
 };
 
 /// One copy of a geometry in the scene.
@@ -86,35 +94,35 @@ struct Draw {
   /// Bit t % 64 of word t / 64 set: triangle t of the geometry is left out (the stream replaces it). May be
   /// empty.
   std::span<const std::uint64_t> replaced;
-  Stream stream;  ///< may be empty; its triangles are ordered by source triangle
+  Stream stream;  ///< may be empty
   /// Where the geometry's vertices are this frame if not where they were (skins, morphs): empty, or one per
-  /// vertex. Clusters are then not culled by their cones.
+  /// vertex, as Vertices' are. Clusters are then not culled by their cones.
   std::span<const glm::vec3> posedPositions;
   std::span<const glm::vec3> posedNormals;
   std::span<const glm::vec4> posedTangents;
-  glm::mat4 modelToView{1.0f};  ///< affine; a negative determinant turns the front faces round
+  glm::mat4 modelToView{1.0f};  ///< affine, finite; a negative determinant turns the front faces round
   std::uint32_t firstId = 0;    ///< id plane: firstId + source triangle
 };
 
 /// Anti-aliased line segments over the picture, hidden where a surface lies in front of them. They are drawn after all
 /// triangles, in the order given, and leave no trace in depth, normals and ids.
 struct Lines {
-  std::span<const glm::vec3> points;  ///< two per segment, model space, finite
-  std::span<const glm::vec4> colors;  ///< linear RGB and straight alpha, one per segment
-  glm::mat4 modelToView{1.0f};        ///< affine
+  std::span<const glm::vec3> points;  ///< two per segment, model space
+  std::span<const glm::vec4> colors;  ///< linear RGB and straight alpha, one per segment; finite, not checked
+  glm::mat4 modelToView{1.0f};        ///< affine, finite
   float width = 1.0f;                 ///< pixels, above 0, at most 64
 };
 
 /// Everything of one frame. Spans are borrowed until draw() returns.
 struct Frame {
+  /// pixelsX and pixelsY from 1e-33 to 1e36; nearPlane and farPlane finite, a perspective's nearPlane no denormal number.
   Projection projection;
   std::span<const Draw> draws;
   std::span<const Material> materials;
   std::span<const Light> lights;
   std::span<const Lines> lines;
-  Shading shading = Shading::kBlinnPhong;
   Encoding encoding = Encoding::kSrgb;
-  glm::vec4 background{0.0f};  ///< linear RGB and straight alpha
+  glm::vec4 background{0.0f};  ///< linear RGB and straight alpha, in [0, 1]
   int samples = 4;             ///< per pixel: 1, 4 or 8
   /// Above this the frame is refused instead of drawn: nanoseconds that one thread would take, roughly. For scenes of
   /// strangers; the estimate is the same everywhere.
@@ -133,7 +141,8 @@ class TooMuchEffort : public std::runtime_error {
   std::uint32_t heaviestDraw;  ///< the index of the draw that takes the most
 };
 
-/// Where the picture goes. Strides are in elements from row to row. Optional planes have a null pointer.
+/// Where the picture goes: rows of the projection's width. Strides are from row to row; those of optional planes are in
+/// elements, >= width, and mean nothing where the pointer is null.
 struct Target {
   std::uint8_t* rgba = nullptr;  ///< RGBA8, straight alpha
   std::size_t rgbaStride = 0;    ///< in bytes, >= 4 · width
@@ -170,6 +179,8 @@ struct Tuning {
   bool scalar = false;  ///< no vector kernels: slow, the definition of what they must give
 };
 
+/// Holds the threads, and the memory that frames need. Draws one frame at a time: two threads that draw at once need a
+/// renderer each, and may share geometries and textures.
 class Renderer {
  public:
   /// `threads` >= 1 work in all, the calling one included.
@@ -178,8 +189,10 @@ class Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws the frame over every pixel of the target. Throws std::invalid_argument for a frame that breaks the
-  /// rules above, and TooMuchEffort for one beyond its effortLimit (checked before anything is written).
+  /// Draws the frame over every pixel of the target. Throws, before anything is written: std::invalid_argument for a
+  /// frame that breaks a rule above that is checked; TooMuchEffort for one beyond its effortLimit; std::length_error for
+  /// one whose tiles would have to list more than 2^28 things in all or 2^24 in one of them, things being clusters of up
+  /// to 128 triangles, triangles that are blended or had to be clipped, and lines.
   void draw(const Frame& frame, const Target& target, Statistics* statistics = nullptr);
 
  private:

@@ -7,6 +7,36 @@
 
 namespace limn::raster {
 
+/// Pixels of a tile, from its corner, the last ones excluded.
+struct PixelBox {
+  int x0, y0, x1, y1;
+  bool isEmpty() const { return x0 >= x1 || y0 >= y1; }
+};
+
+/// First pixel (of the window) of a range of sub-pixels that holds a sample in it.
+inline int firstPixel(const Tile& tile, std::int32_t low) {
+  return (low - tile.sampleRange.high + kSubpixels - 1) >> kSubpixelBits;
+}
+inline int lastPixel(const Tile& tile, std::int32_t high) {
+  return (high - tile.sampleRange.low) >> kSubpixelBits;
+}
+
+/// The pixels of the tile that a triangle may cover samples of.
+inline PixelBox pixelsOf(const Tile& tile, const Corners& c) {
+  const Box box = boxOf(c);
+  return {std::max(firstPixel(tile, box.minX) - tile.left, 0),
+          std::max(firstPixel(tile, box.minY) - tile.top, 0),
+          std::min(lastPixel(tile, box.maxX) - tile.left + 1, tile.width),
+          std::min(lastPixel(tile, box.maxY) - tile.top + 1, tile.height)};
+}
+
+/// Whether the triangle counts in this tile: where those pixels begin.
+inline bool isFirstTile(const Tile& tile, const Corners& c) {
+  const Box box = boxOf(c);
+  return std::max(firstPixel(tile, box.minX), 0) >= tile.left &&
+         std::max(firstPixel(tile, box.minY), 0) >= tile.top;
+}
+
 class TriangleSetup {
  public:
   /// False: nothing of the triangle can be drawn in the tile. `planes` are of the corners in submitted order, or
@@ -23,7 +53,8 @@ class TriangleSetup {
       if (anchors == nullptr) std::swap(ordered[1], ordered[2]);
     }
     corners = c;
-    if (!setBounds(tile)) return false;
+    pixels = pixelsOf(tile, corners);
+    if (pixels.isEmpty()) return false;
     for (int i = 0; i < 3; ++i) edges_[i] = Edge::of(c, i, (i + 1) % 3);
     setRecord(anchors != nullptr ? *anchors : corners, ordered, source, back);
     return true;
@@ -51,20 +82,9 @@ class TriangleSetup {
 
   Corners corners;
   Record record;
-  int x0, y0, x1, y1;  ///< pixels of the tile, the last ones excluded
+  PixelBox pixels;
 
  private:
-  bool setBounds(const Tile& tile) {
-    const auto [minX, maxX] = std::minmax({corners.x[0], corners.x[1], corners.x[2]});
-    const auto [minY, maxY] = std::minmax({corners.y[0], corners.y[1], corners.y[2]});
-    const auto [low, high] = tile.sampleRange;
-    x0 = std::max(((minX - high + kSubpixels - 1) >> kSubpixelBits) - tile.left, 0);
-    x1 = std::min(((maxX - low) >> kSubpixelBits) - tile.left + 1, tile.width);
-    y0 = std::max(((minY - high + kSubpixels - 1) >> kSubpixelBits) - tile.top, 0);
-    y1 = std::min(((maxY - low) >> kSubpixelBits) - tile.top + 1, tile.height);
-    return x0 < x1 && y0 < y1;
-  }
-
   void setRecord(const Corners& anchors, const float* const plane[3], std::uint32_t source, bool back) {
     const PlaneBasis basis(anchors);
     for (int i = 0; i < 4; ++i) {

@@ -30,7 +30,7 @@ class Shader {
         continue;
       }
       if (blended || ((left >> s) & 1U) == 0) continue;
-      const unsigned mask = samplesOf(tile_.ids[o], x, y);
+      const unsigned mask = tile_.samplesOf(tile_.ids[o], x, y);
       left &= ~mask;
       sum += fragment(tile_.ids[o], mask, x, y) *
              (static_cast<float>(std::popcount(mask)) / static_cast<float>(samples_));
@@ -52,13 +52,6 @@ class Shader {
   }
 
  private:
-  unsigned samplesOf(std::uint32_t id, int x, int y) const {
-    unsigned mask = 0;
-    for (int s = 0; s < samples_; ++s)
-      mask |= static_cast<unsigned>(tile_.ids[tile_.offset(s, x, y)] == id) << s;
-    return mask;
-  }
-
   // Colour times alpha, and alpha, of an opaque triangle.
   glm::vec4 fragment(std::uint32_t id, unsigned mask, int x, int y) {
     Record& record = tile_.records[id];
@@ -113,7 +106,7 @@ class Shader {
       target.ids[row * target.idStride + column] = sample < 0 ? kNoId : idOf(tile_.ids[o]);
     if (target.normals != nullptr)
       target.normals[row * target.normalStride + column] =
-          sample < 0 ? glm::vec3(0.0F) : normalOf(tile_.ids[o], samplesOf(tile_.ids[o], x, y), x, y);
+          sample < 0 ? glm::vec3(0.0F) : normalOf(tile_.ids[o], tile_.samplesOf(tile_.ids[o], x, y), x, y);
   }
 
   std::uint32_t idOf(std::uint32_t id) const {

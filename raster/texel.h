@@ -14,6 +14,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "raster/numbers.h"
 #include "raster/texture.h"
 
 namespace limn::raster {
@@ -75,12 +76,12 @@ inline float levelOf(const Texture::Data& t, const Footprint& p) {
   const auto w = static_cast<float>(t.levels[0].width), h = static_cast<float>(t.levels[0].height);
   const float ax = p.ux * w, bx = p.vx * h, ay = p.uy * w, by = p.vy * h;
   const float dx = ax * ax + bx * bx, dy = ay * ay + by * by;
-  return 0.5F * fastLog2(std::min(std::max(std::max(dx, dy), 1e-30F), 1e30F));
+  return 0.5F * fastLog2(std::min(larger(larger(dx, dy), 1e-30F), 1e30F));
 }
 
-/// A coordinate within [0, 1] from any finite one.
+/// A coordinate within [0, 1] from any number.
 inline float wrapped(float u, Wrap wrap) {
-  u = std::min(std::max(u, -1e6F), 1e6F);
+  u = std::min(larger(u, -1e6F), 1e6F);
   if (wrap == Wrap::kClampToEdge) return std::min(std::max(u, 0.0F), 1.0F);
   if (wrap == Wrap::kRepeat) return u - std::floor(u);
   const float half = u * 0.5F, period = (half - std::floor(half)) * 2.0F;

@@ -51,6 +51,7 @@ struct alignas(64) Record {
 
   static constexpr std::uint32_t kLoose = 0x80000000U;
 
+  /// Of the plane i at a sub-pixel of the window. Anchored at a corner, so the same in all tiles.
   float value(int i, std::int32_t x, std::int32_t y) const {
     return (origin[i] + slopeY[i] * static_cast<float>(y - y0)) + slopeX[i] * static_cast<float>(x - x0);
   }
@@ -118,6 +119,13 @@ class Tile {
   }
   static constexpr int kCellWidth = 16;  ///< pixels are cleared that many at a time
   static constexpr std::size_t kStripWidth = kCellWidth;
+  /// The samples of a pixel that show a record.
+  unsigned samplesOf(std::uint32_t id, int x, int y) const {
+    unsigned mask = 0;
+    for (unsigned s = 0; s < context->samples.size(); ++s)
+      mask |= static_cast<unsigned>(ids[offset(static_cast<int>(s), x, y)] == id) << s;
+    return mask;
+  }
   /// Where a record's triangle comes from.
   TriangleRef refOf(const Record& record) const;
   Surface surfaceOf(const Record& record) const {

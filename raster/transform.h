@@ -38,7 +38,7 @@ inline glm::vec3 viewNormal(const Batch& batch, std::uint32_t i) {
   return {x * inverse, y * inverse, z * inverse};
 }
 
-/// All vertices of a cluster; each must lie before the near plane's guard (see FrontEnd).
+/// All vertices of a cluster; each must lie beyond the near plane and within the guard band.
 void transformCluster(const Batch& batch, const Cluster& cluster, const ScreenMap& map, VertexBlock& out);
 
 /// Box of a cluster's window coordinates.

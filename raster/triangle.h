@@ -14,7 +14,7 @@
 
 namespace limn::raster {
 
-/// Corners in the order that makes the area positive with y pointing down.
+/// Corners of a triangle; drawn ones are in the order that makes the area positive.
 struct Corners {
   std::int32_t x[3], y[3];
 };
@@ -49,8 +49,7 @@ inline bool covers(const Corners& c, std::int32_t x, std::int32_t y) {
          Edge::of(c, 2, 0).at(x, y) >= 0;
 }
 
-/// Value = (origin + slopeY · (y - y0)) + slopeX · (x - x0), anchored at the first corner: independent of
-/// tiles.
+/// Of a value's plane, per sub-pixel (see Record::value).
 struct Slopes {
   float x, y;
 };

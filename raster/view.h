@@ -9,22 +9,29 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
 #include "raster/base/projection.h"
+#include "raster/numbers.h"
 #include "raster/samples.h"
 
 namespace limn::raster {
 
 /// How far beyond the window coordinates may go before they are clipped geometrically. With it no difference
 /// of two coordinates exceeds 2^23, exact in a float, and edge functions fit 32 bits within a tile (see
-/// edges.h).
+/// triangle.h).
 inline constexpr int kGuardPixels = 8191;
 
 /// v -> (rows · (v, 1)), evaluated as ((m0·x + m1·y) + m2·z) + m3 everywhere.
 struct Affine {
   float m[3][4];
 
+  Affine() = default;
+  explicit Affine(const glm::mat4& matrix) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 4; ++j) m[i][j] = matrix[j][i];
+  }
   glm::vec3 operator()(float x, float y, float z) const {
     return {row(0, x, y, z), row(1, x, y, z), row(2, x, y, z)};
   }
@@ -67,7 +74,7 @@ struct ScreenMap {
 
   /// Distance along -z of a depth value, at most that of the far plane.
   float viewDepth(float depth) const {
-    const float within = std::max(depth, farDepth);
+    const float within = larger(depth, farDepth);
     return perspective ? 1.0F / within : (depthOffset - within) * (farPlane - nearPlane);
   }
 

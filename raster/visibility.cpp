@@ -11,14 +11,6 @@
 namespace limn::raster {
 namespace {
 
-// A triangle counts in the tile where its box begins.
-bool isFirstTile(const Tile& tile, const Corners& c) {
-  const int bias = kSubpixels - 1 - tile.sampleRange.high;
-  const int minX = (std::min({c.x[0], c.x[1], c.x[2]}) + bias) >> kSubpixelBits;
-  const int minY = (std::min({c.y[0], c.y[1], c.y[2]}) + bias) >> kSubpixelBits;
-  return std::max(minX, 0) >= tile.left && std::max(minY, 0) >= tile.top;
-}
-
 bool winsTie(const Tile& tile, const Record& record, std::uint32_t other) {
   return other == kNoRecord || tile.orderOf(record) < tile.orderOf(tile.records[other]);
 }
@@ -33,10 +25,10 @@ void drawTriangle(Tile& tile, TriangleSetup& t) {
   const Surface surface = tile.surfaceOf(t.record);
   const bool masked = surface.material->alphaMode == AlphaMode::kMask;
   if (isFirstTile(tile, t.corners)) ++tile.statistics.trianglesDrawn;
-  tile.touch(t.x0, t.y0, t.x1, t.y1);
+  tile.touch(t.pixels.x0, t.pixels.y0, t.pixels.x1, t.pixels.y1);
   std::uint32_t id = kNoRecord;  // only triangles that win a sample get a record
-  for (int y = t.y0; y < t.y1; ++y)
-    for (int x = t.x0; x < t.x1; ++x) {
+  for (int y = t.pixels.y0; y < t.pixels.y1; ++y)
+    for (int x = t.pixels.x0; x < t.pixels.x1; ++x) {
       const unsigned coverage = t.coverage(tile, x, y);
       unsigned won = 0;
       for (unsigned s = 0; s < tile.context->samples.size(); ++s) {

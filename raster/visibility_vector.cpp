@@ -98,10 +98,10 @@ class Visibility {
       return drawLooseScalar(tile_, item);
     TriangleSetup setup;
     if (!setLoose(tile_, item, setup)) return;
-    countFirst(setup.corners);
+    tile_.statistics.trianglesDrawn += isFirstTile(tile_, setup.corners) ? 1 : 0;
     tile_.reserveRecords(1);
     tile_.records[tile_.recordCount] = setup.record;
-    drawAlone(setup.corners, setup.x0, setup.y0, setup.x1, setup.y1);
+    drawAlone(setup.corners, setup.pixels);
   }
 
  private:
@@ -225,17 +225,10 @@ class Visibility {
       const std::int64_t area = signedArea(c);
       const bool back = facesAway(area, cluster_.batch->mirrored);
       if (area == 0 || (back && !doubleSided)) continue;
-      countFirst(c);
+      tile_.statistics.trianglesDrawn += isFirstTile(tile_, c) ? 1 : 0;
       long_[longCount_++] =
           static_cast<std::uint32_t>(triangle | (area < 0 ? kSwapped : 0) | (back ? kBack : 0));
     }
-  }
-
-  void countFirst(const Corners& c) const {
-    const int bias = kSubpixels - 1 - tile_.sampleRange.high;
-    const int x = (std::min({c.x[0], c.x[1], c.x[2]}) + bias) >> kSubpixelBits;
-    const int y = (std::min({c.y[0], c.y[1], c.y[2]}) + bias) >> kSubpixelBits;
-    tile_.statistics.trianglesDrawn += std::max(x, 0) >= tile_.left && std::max(y, 0) >= tile_.top ? 1 : 0;
   }
 
   // Triangles of 64-bit edge functions, and slivers.
@@ -244,23 +237,16 @@ class Visibility {
     const PlaneBasis basis(c);
     tile_.reserveRecords(1);
     cluster_.prepareRecord(tile_, tag, basis.x1, basis.x2, basis.y1, basis.y2);
-    const int bias = kSubpixels - 1 - tile_.sampleRange.high, low = tile_.sampleRange.low;
-    const int x0 = std::max(((std::min({c.x[0], c.x[1], c.x[2]}) + bias) >> kSubpixelBits) - tile_.left, 0);
-    const int y0 = std::max(((std::min({c.y[0], c.y[1], c.y[2]}) + bias) >> kSubpixelBits) - tile_.top, 0);
-    const int x1 =
-        std::min(((std::max({c.x[0], c.x[1], c.x[2]}) - low) >> kSubpixelBits) - tile_.left + 1, tile_.width);
-    const int y1 =
-        std::min(((std::max({c.y[0], c.y[1], c.y[2]}) - low) >> kSubpixelBits) - tile_.top + 1, tile_.height);
-    drawAlone(c, x0, y0, x1, y1);
+    drawAlone(c, pixelsOf(tile_, c));
   }
 
   // Draws the record that is next to be kept.
-  void drawAlone(const Corners& c, int x0, int y0, int x1, int y1) {
-    tile_.touch(x0, y0, x1, y1);
+  void drawAlone(const Corners& c, const PixelBox& p) {
+    tile_.touch(p.x0, p.y0, p.x1, p.y1);
     if (tile_.hasSeveralSamples())
-      multisample_.draw(c, x0, y0, x1, y1);
+      multisample_.draw(c, p.x0, p.y0, p.x1, p.y1);
     else
-      rows_.draw(c, x0, y0, x1, y1);
+      rows_.draw(c, p.x0, p.y0, p.x1, p.y1);
   }
 
   Tile& tile_;

@@ -397,6 +397,10 @@ void FrameDrawer::draw(const Pose& pose, const CameraView& camera, const FrameSe
     s.renderer.draw(frame, target, statistics ? &statistics->raster : nullptr);
   } catch (const raster::TooMuchEffort& error) {
     s.refuse(error, frame.effortLimit);
+  } catch (const std::length_error&) {
+    throw InputError(s.scene.name +
+                     ": /nodes: too many pieces fill too much of the picture to keep account of; draw fewer "
+                     "copies in one place, or a smaller --size");
   }
 
   if (!statistics) return;

@@ -16,7 +16,8 @@ struct SinCos {
   double sin, cos;
 };
 
-/// Sine and cosine of `radians`, |radians| <= 1e6 (beyond that the reduction loses digits; NaN for non-finite).
+/// Sine and cosine of `radians`, |radians| <= 1e6 (beyond that the reduction loses digits; NaN above 1e15 and for
+/// non-finite).
 SinCos sinCos(double radians);
 
 /// Sine and cosine of an angle in degrees; exact at multiples of 90.

@@ -1,6 +1,7 @@
-// A frame like the one before it allocates nothing.
+// A frame like the one before it allocates nothing, and what the renderer holds is what it says.
 #include <gtest/gtest.h>
 
+#include <malloc.h>
 #include <atomic>
 #include <cstdlib>
 #include <memory>
@@ -11,31 +12,39 @@
 
 namespace {
 std::atomic<std::uint64_t> allocations = 0;
+std::atomic<std::int64_t> held = 0;  // bytes
+
+void release(void* p) {
+  held -= static_cast<std::int64_t>(malloc_usable_size(p));
+  std::free(p);
 }
+void* counted(void* p) {
+  if (p == nullptr) throw std::bad_alloc();
+  ++allocations;
+  held += static_cast<std::int64_t>(malloc_usable_size(p));
+  return p;
+}
+}  // namespace
 
 // The replaceable allocation functions, counted.
 void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
-  throw std::bad_alloc();
+  return counted(std::malloc(size == 0 ? 1 : size));
 }
 void* operator new(std::size_t size, std::align_val_t alignment) {
-  ++allocations;
   const auto a = static_cast<std::size_t>(alignment);
-  if (void* p = std::aligned_alloc(a, (size + a - 1) / a * a)) return p;
-  throw std::bad_alloc();
+  return counted(std::aligned_alloc(a, (size + a - 1) / a * a));
 }
 void operator delete(void* p) noexcept {
-  std::free(p);
+  release(p);
 }
 void operator delete(void* p, std::size_t) noexcept {
-  std::free(p);
+  release(p);
 }
 void operator delete(void* p, std::align_val_t) noexcept {
-  std::free(p);
+  release(p);
 }
 void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
-  std::free(p);
+  release(p);
 }
 
 namespace limn::raster::test {
@@ -73,10 +82,12 @@ class UnevenFrame {
     scene_.frame.lights = scene_.lights;
   }
 
-  void draw(Renderer& renderer, int samples) {
+  const Statistics& draw(Renderer& renderer, int samples) {
     scene_.frame.samples = samples;
     renderer.draw(scene_.frame, picture_.target(), &statistics_);
+    return statistics_;
   }
+  void blend() { scene_.materials[0].alphaMode = AlphaMode::kBlend; }
 
  private:
   Scene scene_;
@@ -106,6 +117,18 @@ TEST(Allocation, NoneInASteadyFrameWhicheverThreadDrawsWhichTile) {
         }
         EXPECT_EQ(quiet, 40) << threads << " threads, " << samples << " samples, " << drawn << " frames";
       }
+}
+
+TEST(Allocation, StatisticsKnowWhatTheRendererHolds) {
+  for (const bool blended : {false, true}) {
+    UnevenFrame frame(true);
+    if (blended) frame.blend();
+    const std::int64_t before = held;
+    Renderer renderer(2);
+    frame.draw(renderer, 4);
+    const auto told = static_cast<double>(frame.draw(renderer, 4).scratchBytes);
+    EXPECT_NEAR(told, static_cast<double>(held - before), 0.01 * told + 20000.0);
+  }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 #include <random>
 
@@ -216,6 +218,72 @@ TEST(Kernels, AgreeOnTexturesOfEveryFilterAndWrap) {
       textured.scene.frame.samples = wrap == Wrap::kRepeat ? 4 : 1;
       expectSameOnEveryTarget(textured.scene, "texture");
     }
+}
+
+// Triangles from the eye to the far plane, of which rounding puts samples beyond it, and a light that tells.
+TEST(Kernels, AgreeOnPointsThatRoundingPutsBeyondTheFarPlane) {
+  constexpr float kFar = 1e5F;
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  Soup soup;
+  // Their upper edges, all but at the far plane, run through centres of pixels.
+  const auto far = [&](int column, int row) {
+    const float w = kFar * (0.99F + 0.0099F * unit(random));
+    return glm::vec3(static_cast<float>(column - 140) / 140.0F * w,
+                     static_cast<float>(101 - row) / 140.0F * w, -w);
+  };
+  for (int i = 0; i < 60; ++i) {
+    constexpr float kNear = 0.0101F;
+    soup.triangle({unit(random) * kNear, -0.7F * kNear, -kNear}, far(150 + i, i), far(130 - i, i));
+  }
+  const Geometry geometry = soup.geometry();
+  for (const int samples : {1, 4}) {
+    Scene scene({true, 140.0F, 140.0F, 0.01F, kFar, 281, 203});
+    scene.frame.samples = samples;
+    scene.draws[0].geometry = &geometry;
+    scene.materials[0].doubleSided = true;
+    scene.lights[0] = {.kind = Light::Kind::kPoint,
+                       .position = {0.0F, 0.0F, -0.7F * kFar},
+                       .color = glm::vec3(8e9F),
+                       .ambient = 0.0F};
+    Renderer renderer(1);
+    const Picture picture = scene.draw(renderer);
+    if (samples == 1)  // with several, none of them lies there, but colours are those of the centres
+      EXPECT_GT(std::count(picture.depth.begin(), picture.depth.end(), 1.0F / (1.0F / kFar)), 20);
+    expectSameOnEveryTarget(scene, "beyond the far plane");
+  }
+}
+
+TEST(Kernels, AgreeOnTextureCoordinatesThatAreNoNumbers) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kStrange[] = {std::numeric_limits<float>::quiet_NaN(), kInfinity, -kInfinity, 1e30F,
+                                -1e30F};
+  Soup soup;
+  std::vector<glm::vec2> texcoords;
+  for (std::size_t i = 0; i < 40; ++i) {
+    const glm::vec3 corner{static_cast<float>(i % 8) * 12.0F - 48.0F,
+                           static_cast<float>(i / 8) * 12.0F - 30.0F, -5.0F - static_cast<float>(i)};
+    soup.triangle(corner, corner + glm::vec3(12.0F, 0.0F, -0.5F), corner + glm::vec3(0.0F, 12.0F, -0.3F));
+    texcoords.insert(texcoords.end(), {{0.1F, 0.2F}, {1.7F, 0.3F}, {0.2F, 2.4F}});
+    texcoords[3 * i + i % 3][static_cast<int>(i / 5 % 2)] = kStrange[i % 5];
+    if (i >= 20) texcoords[3 * i + (i + 1) % 3][static_cast<int>(i / 5 % 2)] = kStrange[i / 2 % 5];
+  }
+  Vertices vertices;
+  vertices.positions = soup.positions, vertices.normals = soup.normals, vertices.texcoords = texcoords;
+  const Part part{0, 40, 0};
+  const Geometry geometry(vertices, soup.indices, std::span(&part, 1));
+  for (const Filter filter : {Filter::kNearest, Filter::kLinearMipNearest, Filter::kLinearMipLinear})
+    for (const Wrap wrap : {Wrap::kRepeat, Wrap::kMirroredRepeat, Wrap::kClampToEdge})
+      for (const int samples : {1, 4}) {
+        std::vector<std::uint8_t> pixels(4UL * 9 * 5);
+        for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = static_cast<std::uint8_t>(i * 37);
+        const Texture texture(9, 5, pixels, Texture::Content::kSrgb, {wrap, wrap, filter, true});
+        Scene scene(pixelProjection(110, 70));
+        scene.draws[0].geometry = &geometry;
+        scene.materials[0].baseColorTexture = &texture;
+        scene.frame.samples = samples;
+        expectSameOnEveryTarget(scene, "coordinates that are no numbers");
+      }
 }
 
 TEST(Kernels, AgreeOnMasksAndBlending) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "raster/texel.h"
@@ -82,6 +83,32 @@ TEST(TextureSampling, IsWhatOpenGlSaysForEveryWrapModeAndSize) {
                   << static_cast<int>(wrapU) << ' ' << static_cast<int>(wrapV);
           }
         }
+}
+
+TEST(TextureSampling, HasATexelForEveryNumber) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(),
+                  kInfinity = std::numeric_limits<float>::infinity();
+  for (const Wrap wrap : {Wrap::kRepeat, Wrap::kMirroredRepeat, Wrap::kClampToEdge})
+    for (const Filter filter :
+         {Filter::kNearest, Filter::kLinear, Filter::kLinearMipNearest, Filter::kLinearMipLinear}) {
+      const Texture texture = Oracle({7, 3}, {wrap, wrap, filter, true}, 8).texture();
+      const auto at = [&](float u, float v) { return sample(texture.data(), {u, v, 0, 0, 0, 0}); };
+      const auto wide = [&](float ux, float vy) {
+        return sample(texture.data(), {0.3F, 0.4F, ux, 0, 0, vy});
+      };
+      for (const float low : {kNan, -kInfinity, -1e30F}) {
+        EXPECT_EQ(at(low, 0.4F), at(-1e6F, 0.4F)) << low;
+        EXPECT_EQ(at(0.3F, low), at(0.3F, -1e6F)) << low;
+      }
+      for (const float high : {kInfinity, 1e30F}) {
+        EXPECT_EQ(at(high, 0.4F), at(1e6F, 0.4F)) << high;
+        EXPECT_EQ(at(0.3F, high), at(0.3F, 1e6F)) << high;
+      }
+      // Of footprints: none is known, or the widest.
+      EXPECT_EQ(wide(kNan, kNan), at(0.3F, 0.4F));
+      EXPECT_EQ(wide(kInfinity, 0.0F), wide(1e14F, 0.0F));
+      EXPECT_EQ(wide(0.0F, kInfinity), wide(0.0F, 1e14F));
+    }
 }
 
 TEST(TextureSampling, EveryLevelHasTheMeanOfTheImage) {
