@@ -105,87 +105,130 @@ class Visibility {
   }
 
  private:
+  // Triangles [t, t + kLanes) of a cluster on their way into the queues.
+  struct Candidates {
+    std::size_t t;
+    Lookup a, b, c;             // the values of their corners
+    VI ax, ay, bx, by, cx, cy;  // corners as submitted
+    VI extent;                  // the longer side of the box of corners
+    PixelRange x, y;            // of the tile's pixels with samples in that box
+    VI ux, uy, vx, vy, area;    // edges from the first corner, twice the signed area
+    MI negative, positive;      // by that area
+    MI live;                    // may cover samples of the tile, and neither culled nor queued yet
+
+    HWY_INLINE Candidates(const Tile& tile, const ClusterInTile& cluster, std::size_t first)
+        : t(first), a(lookup(cluster, 0, t)), b(lookup(cluster, 1, t)), c(lookup(cluster, 2, t)) {
+      const I d;
+      const VertexBlock& block = *cluster.block;
+      ax = a(d, block.x), ay = a(d, block.y);
+      bx = b(d, block.x), by = b(d, block.y);
+      cx = c(d, block.x), cy = c(d, block.y);
+      const VI minX = min3(ax, bx, cx), maxX = max3(ax, bx, cx);
+      const VI minY = min3(ay, by, cy), maxY = max3(ay, by, cy);
+      extent = hn::Max(hn::Sub(maxX, minX), hn::Sub(maxY, minY));
+      x = pixelsOf(tile, minX, maxX, tile.left, tile.width);
+      y = pixelsOf(tile, minY, maxY, tile.top, tile.height);
+      live = hn::And(hn::FirstN(d, cluster.cluster->triangleCount - t),
+                     hn::And(atMost(x.first, x.last), atMost(y.first, y.last)));
+    }
+    HWY_INLINE void setAreas() {
+      const I d;
+      ux = hn::Sub(bx, ax), uy = hn::Sub(by, ay), vx = hn::Sub(cx, ax), vy = hn::Sub(cy, ay);
+      area = hn::Sub(hn::Mul(ux, vy), hn::Mul(vx, uy));
+      negative = hn::Lt(area, hn::Zero(d)), positive = hn::Gt(area, hn::Zero(d));
+    }
+    HWY_INLINE bool none() const { return hn::AllFalse(I(), live); }
+
+   private:
+    HWY_INLINE static Lookup lookup(const ClusterInTile& cluster, std::size_t corner, std::size_t t) {
+      const std::uint8_t* const numbers = cluster.batch->set->corners[corner].data();
+      return Lookup(hn::PromoteTo(I(), hn::LoadU(U8(), numbers + cluster.cluster->firstTriangle + t)));
+    }
+  };
+
   // Triangles [t, t + kLanes) of the cluster: culls them and queues the others by size.
   HWY_INLINE void sort(std::size_t t, bool doubleSided) {
     const I d;
-    const F f;
-    const VertexBlock& block = *cluster_.block;
-    const std::size_t first = cluster_.cluster->firstTriangle + t;
-    const auto& corners = cluster_.batch->set->corners;
-    const auto local = [&](int k) {
-      return Lookup(hn::PromoteTo(d, hn::LoadU(U8(), corners[static_cast<std::size_t>(k)].data() + first)));
-    };
-    const Lookup a = local(0), b = local(1), c = local(2);
-    const VI ax = a(d, block.x), ay = a(d, block.y), bx = b(d, block.x), by = b(d, block.y);
-    const VI cx = c(d, block.x), cy = c(d, block.y);
-    const VI minX = min3(ax, bx, cx), maxX = max3(ax, bx, cx), minY = min3(ay, by, cy),
-             maxY = max3(ay, by, cy);
-    const PixelRange x = pixelsOf(tile_, minX, maxX, tile_.left, tile_.width);
-    const PixelRange y = pixelsOf(tile_, minY, maxY, tile_.top, tile_.height);
-    MI live = hn::And(hn::FirstN(d, cluster_.cluster->triangleCount - t),
-                      hn::And(atMost(x.first, x.last), atMost(y.first, y.last)));
-    live = hn::And(live, notReplaced(first));
-    if (hn::AllFalse(d, live)) return;
-
-    const VI extent = hn::Max(hn::Sub(maxX, minX), hn::Sub(maxY, minY));
-    const MI small = hn::Lt(extent, hn::Set(d, kSmall));
-    const MI large = hn::AndNot(small, live);
+    Candidates c(tile_, cluster_, t);
+    c.live = hn::And(c.live, notReplaced(cluster_.cluster->firstTriangle + t));
+    if (c.none()) return;
+    const MI small = hn::Lt(c.extent, hn::Set(d, kSmall)), large = hn::AndNot(small, c.live);
     if (!hn::AllFalse(d, large)) sortLarge(t, large, doubleSided);
+    c.setAreas();
+    const MI back = cluster_.batch->mirrored ? c.negative : c.positive,
+             front = cluster_.batch->mirrored ? c.positive : c.negative;
+    c.live = hn::And(hn::And(c.live, small), doubleSided ? hn::Or(front, back) : front);
+    if (c.none()) return;
+    countAndBound(c);
+    const VI tag = tagsOf(c, back);
+    queueSlivers(c, tag);
+    queueBySize(c, tag);
+  }
 
-    const VI ux = hn::Sub(bx, ax), uy = hn::Sub(by, ay), vx = hn::Sub(cx, ax), vy = hn::Sub(cy, ay);
-    const VI area = hn::Sub(hn::Mul(ux, vy), hn::Mul(vx, uy));
-    const MI negative = hn::Lt(area, hn::Zero(d)), positive = hn::Gt(area, hn::Zero(d));
-    const MI back = cluster_.batch->mirrored ? negative : positive,
-             front = cluster_.batch->mirrored ? positive : negative;
-    live = hn::And(hn::And(live, small), doubleSided ? hn::Or(front, back) : front);
-    if (hn::AllFalse(d, live)) return;
-    const MI isFirst = hn::And(atLeast(hn::Max(x.begin, hn::Zero(d)), hn::Set(d, tile_.left)),
-                               atLeast(hn::Max(y.begin, hn::Zero(d)), hn::Set(d, tile_.top)));
-    tile_.statistics.trianglesDrawn += hn::CountTrue(d, hn::And(live, isFirst));
-
+  // Statistics, and the pixels that touchQueued() is to clear.
+  HWY_INLINE void countAndBound(const Candidates& c) {
+    const I d;
+    const MI isFirst = hn::And(atLeast(hn::Max(c.x.begin, hn::Zero(d)), hn::Set(d, tile_.left)),
+                               atLeast(hn::Max(c.y.begin, hn::Zero(d)), hn::Set(d, tile_.top)));
+    tile_.statistics.trianglesDrawn += hn::CountTrue(d, hn::And(c.live, isFirst));
     const VI left = hn::Set(d, tile_.left), top = hn::Set(d, tile_.top);
-    const auto where = [&](VI v, VI other) HWY_ATTR { return hn::IfThenElse(live, v, other); };
-    minX_ = hn::Min(minX_, where(hn::Sub(x.first, left), minX_)),
-    maxX_ = hn::Max(maxX_, where(hn::Sub(x.last, left), maxX_));
-    minY_ = hn::Min(minY_, where(hn::Sub(y.first, top), minY_)),
-    maxY_ = hn::Max(maxY_, where(hn::Sub(y.last, top), maxY_));
+    const auto where = [&](VI v, VI other) HWY_ATTR { return hn::IfThenElse(c.live, v, other); };
+    minX_ = hn::Min(minX_, where(hn::Sub(c.x.first, left), minX_));
+    maxX_ = hn::Max(maxX_, where(hn::Sub(c.x.last, left), maxX_));
+    minY_ = hn::Min(minY_, where(hn::Sub(c.y.first, top), minY_));
+    maxY_ = hn::Max(maxY_, where(hn::Sub(c.y.last, top), maxY_));
+  }
 
-    VI tag = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(t)));
-    tag = hn::Or(tag, hn::And(hn::VecFromMask(d, negative), hn::Set(d, kSwapped)));
-    tag = hn::Or(tag, hn::And(hn::VecFromMask(d, back), hn::Set(d, kBack)));
-    const MI sliver = hn::And(slivers(area, ux, uy, vx, vy), live);
-    if (!hn::AllFalse(d, sliver)) {
-      alignas(64) std::int32_t tags[kLanes];
-      hn::Store(tag, d, tags);
-      for (unsigned rest = bitsOf(sliver); rest != 0; rest &= rest - 1)
-        long_[longCount_++] = static_cast<std::uint32_t>(tags[std::countr_zero(rest)]);
-      live = hn::AndNot(sliver, live);
-    }
-    const MI tiny = hn::And(atMost(hn::Sub(x.last, x.first), hn::Set(d, MicroQueue::kReach)),
-                            atMost(hn::Sub(y.last, y.first), hn::Set(d, MicroQueue::kReach)));
-    const VI secondX = hn::IfThenElse(negative, cx, bx), secondY = hn::IfThenElse(negative, cy, by);
-    const VI thirdX = hn::IfThenElse(negative, bx, cx), thirdY = hn::IfThenElse(negative, by, cy);
-    const auto enqueue = [&](TriangleQueue& queue, MI which) {
-      const std::size_t n = queue.count;
-      const auto put = [&](VI v, std::int32_t* to) { hn::StoreU(hn::Compress(v, which), d, to + n); };
-      put(ax, queue.x[0]), put(ay, queue.y[0]);
-      put(secondX, queue.x[1]), put(secondY, queue.y[1]);
-      put(thirdX, queue.x[2]), put(thirdY, queue.y[2]);
-      put(tag, queue.tag);
-      queue.count += hn::CountTrue(d, which);
-    };
-    const MI rows = hn::AndNot(tiny, live), micro = hn::And(tiny, live);
-    if (!hn::AllFalse(d, rows)) enqueue(rowQueue_, rows);
+  HWY_INLINE static VI tagsOf(const Candidates& c, MI back) {
+    const I d;
+    VI tag = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<std::int32_t>(c.t)));
+    tag = hn::Or(tag, hn::And(hn::VecFromMask(d, c.negative), hn::Set(d, kSwapped)));
+    return hn::Or(tag, hn::And(hn::VecFromMask(d, back), hn::Set(d, kBack)));
+  }
+
+  HWY_INLINE void queueSlivers(Candidates& c, VI tag) {
+    const I d;
+    const MI sliver = hn::And(slivers(c.area, c.ux, c.uy, c.vx, c.vy), c.live);
+    if (hn::AllFalse(d, sliver)) return;
+    alignas(64) std::int32_t tags[kLanes];
+    hn::Store(tag, d, tags);
+    for (unsigned rest = bitsOf(sliver); rest != 0; rest &= rest - 1)
+      long_[longCount_++] = static_cast<std::uint32_t>(tags[std::countr_zero(rest)]);
+    c.live = hn::AndNot(sliver, c.live);
+  }
+
+  // Micro triangles with their corners' depths.
+  HWY_INLINE void queueBySize(const Candidates& c, VI tag) {
+    const I d;
+    const F f;
+    const MI tiny = hn::And(atMost(hn::Sub(c.x.last, c.x.first), hn::Set(d, MicroQueue::kReach)),
+                            atMost(hn::Sub(c.y.last, c.y.first), hn::Set(d, MicroQueue::kReach)));
+    const MI rows = hn::AndNot(tiny, c.live), micro = hn::And(tiny, c.live);
+    if (!hn::AllFalse(d, rows)) enqueue(c, tag, rows, rowQueue_);
     if (hn::AllFalse(d, micro)) return;
-    const VF az = a(f, block.depth), bz = b(f, block.depth), cz = c(f, block.depth);
-    const auto negativeF = hn::RebindMask(f, negative), microF = hn::RebindMask(f, micro);
+    const float* const depth = cluster_.block->depth;
+    const VF az = c.a(f, depth), bz = c.b(f, depth), cz = c.c(f, depth);
+    const MF negativeF = hn::RebindMask(f, c.negative), microF = hn::RebindMask(f, micro);
     const auto putDepth = [&](int k, VF v) {
       hn::StoreU(hn::Compress(v, microF), f, microQueue_.depth[k] + microQueue_.count);
     };
     putDepth(0, az);
     putDepth(1, hn::IfThenElse(negativeF, cz, bz));
     putDepth(2, hn::IfThenElse(negativeF, bz, cz));
-    enqueue(microQueue_, micro);
+    enqueue(c, tag, micro, microQueue_);
+  }
+
+  HWY_INLINE static void enqueue(const Candidates& c, VI tag, MI which, TriangleQueue& queue) {
+    const I d;
+    const std::size_t n = queue.count;
+    const auto put = [&](VI v, std::int32_t* to) { hn::StoreU(hn::Compress(v, which), d, to + n); };
+    put(c.ax, queue.x[0]), put(c.ay, queue.y[0]);
+    put(hn::IfThenElse(c.negative, c.cx, c.bx), queue.x[1]);
+    put(hn::IfThenElse(c.negative, c.cy, c.by), queue.y[1]);
+    put(hn::IfThenElse(c.negative, c.bx, c.cx), queue.x[2]);
+    put(hn::IfThenElse(c.negative, c.by, c.cy), queue.y[2]);
+    put(tag, queue.tag);
+    queue.count += hn::CountTrue(d, which);
   }
 
   HWY_INLINE void touchQueued() {
