@@ -1,0 +1,117 @@
+// The silhouette segments of a refinement by silhouette curves: one across each triangle that the contour crosses, and the
+// vertices that are lowered because they would hide a concave one.
+//
+// Based on: L. Wang et al., "Silhouette Smoothing for Real-Time Rendering of Mesh Surfaces", section III. Differs in: what
+// contour.h and blocking.h say.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "silhouette/curves_pass.h"
+
+namespace limn::silhouette {
+namespace {
+
+using glm::vec2;
+using glm::vec3;
+
+constexpr std::size_t kTrianglesPerBlock = 256;
+
+}  // namespace
+
+void CurvesPass::findSegments() {
+  const std::vector<std::uint32_t>& triangles = scratch.segmentTriangles;
+  scratch.segments.resize(triangles.size());
+  crew.forBlocks(triangles.size(), kTrianglesPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      scratch.segments[k] = segmentOf(triangles[k]);
+      scratch.segmentOf[triangles[k]] = static_cast<std::uint32_t>(k);
+    }
+  });
+}
+
+CurvesPass::Segment CurvesPass::segmentOf(std::uint32_t triangle) {
+  const std::uint32_t* corner = &mesh.indices[3 * std::size_t{triangle}];
+  const std::array<std::uint8_t, 3> seen{scratch.search.visible[corner[0]], scratch.search.visible[corner[1]],
+                                         scratch.search.visible[corner[2]]};
+  Segment segment;
+  if (seen[0] == seen[1] && seen[1] == seen[2]) return segment;
+  segment.lone = seen[1] == seen[2] ? 0 : seen[2] == seen[0] ? 1 : 2;
+  const std::array<std::uint32_t, 2> sides{segment.lone, (segment.lone + 2) % 3};
+  for (std::size_t end = 0; end < 2; ++end) {
+    const SideView side = sideOf(triangle, sides[end]);
+    if (side.edge == nullptr || !side.edge->crosses[side.face]) return segment;
+    segment.ends[end] = segmentEnd(side);
+    segment.weights[end] = sideWeights(sides[end], side.parameter());
+  }
+  segment.exists = true;
+  segment.offsets = segmentCurve(segment.ends[0], segment.ends[1], parameters.robust);
+  segment.steps = steps(segment.ends[0].place, segment.ends[1].place, segment.offsets);
+  return segment;
+}
+
+SegmentEnd CurvesPass::segmentEnd(const SideView& side) const {
+  const std::uint32_t e = side.edge->edge;
+  const float t = side.edge->parameter[side.face];
+  const std::array<std::uint32_t, 2>& v = prepared.vertices[e][side.face];
+  const vec3 normal = (1.0f - t) * mesh.normals[v[0]] + t * mesh.normals[v[1]];
+  const float size2 = glm::dot(normal, normal);
+  const vec3 unit = size2 > 1e-12f ? normal / std::sqrt(size2)
+                                   : prepared.faceNormals[topology.edges()[e].faces[side.face].triangle];
+  const std::array<float, 2>& trust = prepared.trust[e];
+  return {bridgeOf(*side.edge).point(t), unit, (1.0f - t) * trust[0] + t * trust[1]};
+}
+
+void CurvesPass::lowerPoints() {
+  scratch.planes.clear();
+  scratch.lowered.clear();
+  for (std::size_t k = 0; k < scratch.segments.size(); ++k)
+    if (scratch.segments[k].exists) addPlanes(scratch.segmentTriangles[k], scratch.segments[k]);
+  std::vector<BlockingPlane>& planes = scratch.planes;
+  std::sort(planes.begin(), planes.end(), [](const BlockingPlane& a, const BlockingPlane& b) {
+    return a.point != b.point ? a.point < b.point : a.triangle < b.triangle;
+  });
+  for (std::size_t begin = 0, end = 0; begin < planes.size(); begin = end) {
+    while (end < planes.size() && planes[end].point == planes[begin].point) ++end;
+    const std::uint32_t point = planes[begin].point;
+    const vec3 place = mesh.positions[mesh.indices[prepared.blocking.sidesFrom(point)[0]]];
+    const vec3 displacement =
+        prepared.blocking.displacement(place, std::span(planes).subspan(begin, end - begin));
+    if (displacement != vec3(0.0f)) lower(point, displacement);
+  }
+}
+
+// Every point of a concave segment's triangle feels its plane.
+void CurvesPass::addPlanes(std::uint32_t triangle, const Segment& segment) {
+  const SegmentEnd &first = segment.ends[0], &last = segment.ends[1];
+  const float strength =
+      std::min(first.trust, last.trust) * concavity(last.place - first.place, first.normal, last.normal);
+  if (!(strength > 0.0f)) return;
+  const vec3 normal = glm::normalize(first.normal + last.normal);
+  const vec3 middle = curvePoint(first.place, last.place, segment.offsets, 0.5f);
+  const vec2 w = 0.5f * (segment.weights[0] + segment.weights[1]);
+  const std::array<float, 3> nearness{1.0f - w.x - w.y, w.x, w.y};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t point = topology.points()[mesh.indices[3 * std::size_t{triangle} + k]];
+    const float weight = strength * Blocking::nearnessWeight(nearness[k]);
+    if (weight > 0.0f && prepared.blocking.reach(point) > 0.0f)
+      scratch.planes.push_back({point, triangle, weight, middle, normal});
+  }
+}
+
+// Gives every vertex at a point one in the stream, and replaces its triangles.
+void CurvesPass::lower(std::uint32_t point, const vec3& displacement) {
+  for (const std::uint32_t side : prepared.blocking.sidesFrom(point)) {
+    const std::uint32_t vertex = mesh.indices[side];
+    markTriangle(stream.replaced, side / 3);
+    if (scratch.loweredOf[vertex] != kNone) continue;
+    const auto at = static_cast<std::uint32_t>(scratch.lowered.size());
+    scratch.lowered.push_back(vertex);
+    scratch.loweredOf[vertex] = at;
+    stream.setCounts(at + 1, 0);
+    const Origin origin{side / 3, {side % 3 == 1 ? 1.0f : 0.0f, side % 3 == 2 ? 1.0f : 0.0f}};
+    writer.vertex(at, mesh.positions[vertex] + displacement, origin, kLinear);
+  }
+}
+
+}  // namespace limn::silhouette
