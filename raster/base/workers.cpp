@@ -14,8 +14,10 @@
 namespace limn {
 namespace {
 
+constexpr int kMostThreads = 1024;
+
 int checkedThreads(int threads) {
-  require(threads >= 1 && threads <= 1024, "threads must be 1 to 1024");
+  require(threads >= 1 && threads <= kMostThreads, "threads must be 1 to 1024");
   return threads;
 }
 
@@ -45,7 +47,7 @@ int availableThreads() {
   int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   if (sched_getaffinity(0, sizeof set, &set) == 0) threads = CPU_COUNT(&set);
   if (const int quota = controlGroupQuota(); quota > 0) threads = std::min(threads, quota);
-  return std::max(1, threads);
+  return std::clamp(threads, 1, kMostThreads);
 }
 
 }  // namespace limn

@@ -20,7 +20,7 @@ namespace limn {
 
 class Workers {
  public:
-  /// `threads` >= 1 work in all, the calling one included; more than the machine has cores is legal.
+  /// 1 … 1024 threads work in all, the calling one included, cores or not. Others: std::invalid_argument.
   explicit Workers(int threads);
   ~Workers();
   Workers(const Workers&) = delete;
@@ -59,7 +59,7 @@ class Workers {
   std::unique_ptr<tbb::detail::d1::global_control> control_;  // lets TBB have as many workers as asked for
 };
 
-/// How many threads this process may use: its CPU affinity and its control group's quota.
+/// How many threads this process may use: its CPU affinity and its control group's quota; at most 1024.
 int availableThreads();
 
 }  // namespace limn

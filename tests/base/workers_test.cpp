@@ -28,8 +28,13 @@ TEST(Workers, EveryIndexOnceAndSlotsAreExclusive) {
   }
 }
 
-TEST(Workers, RefusesNoThreads) {
+TEST(Workers, RefusesNoThreadsAndTooMany) {
   EXPECT_THROW(limn::Workers(0), std::invalid_argument);
+  EXPECT_THROW(limn::Workers(1025), std::invalid_argument);
+}
+
+TEST(Workers, TakesAsManyAsThereAre) {
+  EXPECT_NO_THROW(limn::Workers(limn::availableThreads()));
 }
 
 }  // namespace
