@@ -98,11 +98,12 @@ Json addTargets(GlbBuilder& builder, const scene::Mesh& mesh) {
 
 /// One primitive per part, all with the same vertices. Where materials want a further set of texture coordinates, the
 /// one set that limn has read is that one too.
-void addMesh(GlbBuilder& builder, const scene::Mesh& mesh, std::size_t materials, Json& json) {
+void addMesh(GlbBuilder& builder, const scene::Mesh& mesh, std::size_t materials, int highestSet,
+             Json& json) {
   const std::vector<glm::vec3> positions = filePositions(mesh);
   Json attributes = addAttributes(builder, mesh, positions);
   if (!mesh.texcoords.empty())
-    for (int set = scene::highestTexcoordSet(builder.root); set > 0; --set)
+    for (int set = highestSet; set > 0; --set)
       attributes["TEXCOORD_" + std::to_string(set)] = attributes["TEXCOORD_0"];
   const Json targets = addTargets(builder, mesh);
   json["primitives"] = Json::array();
@@ -129,17 +130,18 @@ std::vector<std::uint8_t> withMeshes(const Source& source, const std::vector<sce
     GlbBuilder builder;
     builder.root = builtinRoot(source.scene);
     for (std::size_t m = 0; m < meshes.size(); ++m)
-      addMesh(builder, meshes[m], materials, builder.root["meshes"][m]);
+      addMesh(builder, meshes[m], materials, 0, builder.root["meshes"][m]);
     declareExtension(builder.root);
     return builder.finish();
   }
   GltfRewriter rewriter(source.file);
   rewriter.keepRest();
+  const int highestSet = scene::highestTexcoordSet(rewriter.root());
   for (std::size_t m = 0; m < meshes.size(); ++m) {
     if (meshes[m].indices.empty())
       rewriter.keepMesh(m);  // points and lines
     else
-      addMesh(rewriter.builder(), meshes[m], materials, rewriter.root()["meshes"][m]);
+      addMesh(rewriter.builder(), meshes[m], materials, highestSet, rewriter.root()["meshes"][m]);
   }
   declareExtension(rewriter.root());
   return rewriter.builder().finish();

@@ -1,11 +1,13 @@
 #include "apps/scene/gltf_document.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "apps/scene/gltf_container.h"
 #include "apps/scene/gltf_uri.h"
+#include "apps/scene/input_file.h"
 #include "apps/scene/load.h"
 
 namespace limn::scene {
@@ -48,24 +50,44 @@ fs::path pathOrRefused(const GltfDocument& document, const std::string& uri, con
   return path;
 }
 
+/// A file that buffers name: read once however many do, as far as the longest of them.
+struct BufferFile {
+  std::size_t length = 0, firstBuffer = 0;
+  std::shared_ptr<const std::vector<std::uint8_t>> bytes;
+};
+using BufferFiles = std::map<fs::path, BufferFile>;
+
+/// The entry of each buffer's file, null where it has none; nothing is read yet.
+std::vector<BufferFile*> findBufferFiles(const GltfDocument& document, const json& described,
+                                         const Folder& folder, BufferFiles& files) {
+  std::vector<BufferFile*> fileOf;
+  for (const json& buffer : described) {
+    const std::string uri = textOf(buffer, "uri");
+    const std::string place = jsonPointer("buffers", fileOf.size(), "uri");
+    fileOf.push_back(nullptr);
+    if (!buffer.contains("uri") || isDataUri(uri)) continue;
+    const auto [entry, isNew] = files.try_emplace(pathOrRefused(document, uri, folder, place));
+    BufferFile& file = entry->second;
+    if (isNew) file.firstBuffer = fileOf.size() - 1;
+    file.length = std::max(file.length, buffer["byteLength"].get<std::size_t>());
+    fileOf.back() = &file;
+  }
+  return fileOf;
+}
+
 GltfBuffer readBuffer(const GltfDocument& document, std::size_t index, const json& described,
-                      const Folder& folder, const Binary& binary) {
+                      const BufferFile* file, const Binary& binary) {
   GltfBuffer buffer;
   buffer.length = described["byteLength"].get<std::size_t>();
   const std::string place = jsonPointer("buffers", index, "uri");
-  const auto uri = described.find("uri");
-  if (uri == described.end()) {
-    if (index == 0) buffer.bytes = binary;
-  } else if (const std::string& text = uri->get_ref<const std::string&>(); isDataUri(text)) {
-    buffer.owned = decodedOrRefused(document, text, place);
-    buffer.bytes = buffer.owned;
-  } else {
-    std::optional<std::vector<std::uint8_t>> bytes =
-        readFileBytes(pathOrRefused(document, text, folder, place), buffer.length);
-    if (!bytes) document.refuse(place, inQuotes(text) + " cannot be read; may you read it?");
-    buffer.owned = std::move(*bytes);
-    buffer.bytes = buffer.owned;
-  }
+  if (file != nullptr)
+    buffer.source = file->bytes;
+  else if (described.contains("uri"))
+    buffer.source = std::make_shared<const std::vector<std::uint8_t>>(
+        decodedOrRefused(document, textOf(described, "uri"), place));
+  else if (index == 0)
+    buffer.bytes = binary;
+  if (buffer.source) buffer.bytes = *buffer.source;
   if (!buffer.bytes) return buffer;
   if (buffer.bytes->size() < buffer.length) {
     document.refuse(jsonPointer("buffers", index, "byteLength"),
@@ -120,12 +142,7 @@ GltfDocument::GltfDocument(std::string file, std::vector<std::uint8_t> bytes, co
 void GltfDocument::parse(std::size_t jsonOffset, std::string_view text, const Folder& folder, Binary binary) {
   json document = parseGltfJson(file_, text, jsonOffset, notices);
   inputBytes_ = bytes_.size();
-  if (document.contains("buffers")) {
-    for (const json& buffer : document["buffers"]) {
-      buffers.push_back(readBuffer(*this, buffers.size(), buffer, folder, binary));
-      inputBytes_ += buffers.back().owned.size();
-    }
-  }
+  if (document.contains("buffers")) readBuffers(document["buffers"], folder, binary);
   if (document.contains("images")) {
     for (const json& image : document["images"])
       images.push_back(readImage(*this, images.size(), image, folder));
@@ -139,6 +156,25 @@ void GltfDocument::parse(std::size_t jsonOffset, std::string_view text, const Fo
   const bool parsed = parser.LoadASCIIFromString(&model, &errors, &warnings, checked.data(),
                                                  static_cast<unsigned int>(checked.size()), "");
   if (!parsed) refuse("/", errors + "; this is what tinygltf says of it");
+}
+
+void GltfDocument::readBuffers(const json& described, const Folder& folder, const Binary& binary) {
+  BufferFiles files;
+  const std::vector<BufferFile*> fileOf = findBufferFiles(*this, described, folder, files);
+  for (auto& [path, file] : files) {
+    std::optional<std::vector<std::uint8_t>> bytes = readFileBytes(path, file.length);
+    if (!bytes)
+      refuse(jsonPointer("buffers", file.firstBuffer, "uri"),
+             inQuotes(textOf(described[file.firstBuffer], "uri")) + " cannot be read; may you read it?");
+    inputBytes_ += bytes->size();
+    counted_.insert(path);
+    file.bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move(*bytes));
+  }
+  for (const json& buffer : described) {
+    const std::size_t index = buffers.size();
+    buffers.push_back(readBuffer(*this, index, buffer, fileOf[index], binary));
+    if (fileOf[index] == nullptr && buffers.back().source) inputBytes_ += buffers.back().source->size();
+  }
 }
 
 void GltfDocument::refuse(const std::string& place, const std::string& what) const {

@@ -10,7 +10,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,7 +27,7 @@ class Budget {
   /// For a model whose file and external files hold `inputBytes`.
   explicit Budget(std::size_t inputBytes) : left_(kBase + kPerByte * inputBytes) {}
 
-  /// Another external file of `inputBytes` was read.
+  /// One more external file of `inputBytes` was read.
   void grow(std::size_t inputBytes) { left_ += kPerByte * inputBytes; }
   /// `bytes` <= left().
   void take(std::size_t bytes) { left_ -= bytes; }
@@ -42,8 +44,9 @@ class Budget {
 
 struct GltfBuffer {
   std::optional<std::span<const std::uint8_t>> bytes;  ///< absent where the file says not where they are
-  std::vector<std::uint8_t> owned;                     ///< of an external file or a data URI
-  std::size_t length = 0;                              ///< what the file says; `bytes` are that many
+  /// Of a data URI, or of an external file, which all buffers that name it share; null for neither.
+  std::shared_ptr<const std::vector<std::uint8_t>> source;
+  std::size_t length = 0;  ///< what the file says; `bytes` are that many
 };
 
 struct GltfImage {
@@ -65,9 +68,12 @@ class GltfDocument {
   [[noreturn]] void refuse(const std::string& place, const std::string& what) const;
   /// Takes `bytes` from the budget or refuses the file.
   void charge(std::size_t bytes, const std::string& place);
-  /// An external file of `inputBytes` was read: as much more may be made of it.
-  void grow(std::size_t inputBytes) { budget_.grow(inputBytes); }
-  /// Of the file and the buffers that it refers to.
+  /// The external file `path` (of resolveUri), which holds `inputBytes`, was read: as much more may be made of it, but
+  /// not for each time that it is read.
+  void grow(const std::filesystem::path& path, std::size_t inputBytes) {
+    if (counted_.insert(path).second) budget_.grow(inputBytes);
+  }
+  /// Of the file and the distinct ones that its buffers refer to.
   std::size_t inputBytes() const { return inputBytes_; }
   /// Refuses the file if `bytes` are not left, without taking them.
   void checkRoom(std::size_t bytes, const std::string& place) const;
@@ -84,10 +90,13 @@ class GltfDocument {
   void parse(std::size_t jsonOffset, std::string_view text,
              const std::optional<std::filesystem::path>& folder,
              std::optional<std::span<const std::uint8_t>> binary);
+  void readBuffers(const nlohmann::json& described, const std::optional<std::filesystem::path>& folder,
+                   const std::optional<std::span<const std::uint8_t>>& binary);
 
   std::string file_;
   std::vector<std::uint8_t> bytes_;
   std::size_t inputBytes_ = 0;
+  std::set<std::filesystem::path> counted_;  ///< external files that the budget has grown by
   Budget budget_{0};
 };
 

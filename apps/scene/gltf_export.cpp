@@ -47,15 +47,21 @@ std::vector<std::uint32_t> partIndices(const RefinedInstance& instance, const ra
   return indices;
 }
 
+/// What meshes must know of the materials of their file.
+struct MaterialFacts {
+  std::size_t count;
+  int highestTexcoordSet;
+};
+
 /// One set of texture coordinates serves for all that the materials ask for, as it does when limn draws.
-void addTexcoords(const Mesh& mesh, const RefinedInstance& instance, GlbBuilder& builder, Json& attributes) {
+void addTexcoords(const Mesh& mesh, const RefinedInstance& instance, int highestSet, GlbBuilder& builder,
+                  Json& attributes) {
   if (mesh.texcoords.empty()) return;
   const int accessor = builder.addVertices(joined<glm::vec2>(mesh.texcoords, instance.texcoords));
-  for (int set = 0; set <= highestTexcoordSet(builder.root); ++set)
-    attributes["TEXCOORD_" + std::to_string(set)] = accessor;
+  for (int set = 0; set <= highestSet; ++set) attributes["TEXCOORD_" + std::to_string(set)] = accessor;
 }
 
-Json addAttributes(const Mesh& mesh, const RefinedInstance& instance, GlbBuilder& builder) {
+Json addAttributes(const Mesh& mesh, const RefinedInstance& instance, int highestSet, GlbBuilder& builder) {
   const silhouette::RefinedStream& stream = *instance.stream;
   std::vector<glm::vec3> normals = joined<glm::vec3>(instance.shape.normals, stream.normals);
   std::transform(normals.begin(), normals.end(), normals.begin(), unit);
@@ -67,7 +73,7 @@ Json addAttributes(const Mesh& mesh, const RefinedInstance& instance, GlbBuilder
     for (glm::vec4& t : tangents) t = glm::vec4(unit(glm::vec3(t)), t.w < 0.0f ? -1.0f : 1.0f);
     attributes["TANGENT"] = builder.addVertices(tangents);
   }
-  addTexcoords(mesh, instance, builder, attributes);
+  addTexcoords(mesh, instance, highestSet, builder, attributes);
   if (!mesh.colors.empty()) {  // beyond [0, 1] they are out of the format's range
     std::vector<glm::vec4> colors = joined<glm::vec4>(mesh.colors, instance.colors);
     for (glm::vec4& c : colors) c = glm::clamp(c, 0.0f, 1.0f);
@@ -76,8 +82,9 @@ Json addAttributes(const Mesh& mesh, const RefinedInstance& instance, GlbBuilder
   return attributes;
 }
 
-Json meshJson(const Mesh& mesh, const RefinedInstance& instance, std::size_t materials, GlbBuilder& builder) {
-  const Json attributes = addAttributes(mesh, instance, builder);
+Json meshJson(const Mesh& mesh, const RefinedInstance& instance, const MaterialFacts& materials,
+              GlbBuilder& builder) {
+  const Json attributes = addAttributes(mesh, instance, materials.highestTexcoordSet, builder);
   const std::size_t vertices = instance.shape.positions.size() + instance.stream->positions.size();
   Json primitives = Json::array();
   for (const raster::Part& part : mesh.parts) {
@@ -86,7 +93,7 @@ Json meshJson(const Mesh& mesh, const RefinedInstance& instance, std::size_t mat
     Json& primitive = primitives.emplace_back(Json{{"attributes", attributes},
                                                    {"indices", builder.addTriangles(indices, vertices)},
                                                    {"mode", static_cast<int>(kTriangles)}});
-    if (part.material < materials)
+    if (part.material < materials.count)
       primitive["material"] = part.material;  // else glTF's default, as in the scene
   }
   return {{"name", mesh.name}, {"primitives", primitives}};
@@ -132,12 +139,13 @@ void addInstances(const Scene& scene, const Pose& pose, FrameDrawer& drawer, con
     nodes.push_back(nodeJson(mesh["name"], meshes.size(), toWorld));
     meshes.push_back(std::move(mesh));
   };
+  const MaterialFacts materials{scene.materials.size() - 1, highestTexcoordSet(root)};
   std::vector<float> alphas;
   for (std::size_t i = 0; i < pose.instances.size(); ++i) {
     const Mesh& mesh = scene.meshes[pose.instances[i].mesh];
     if (mesh.indices.empty() || !pose.instances[i].visible) continue;
     const RefinedInstance instance = drawer.instance(i);
-    place(meshJson(mesh, instance, scene.materials.size() - 1, builder), instance.shapeToWorld);
+    place(meshJson(mesh, instance, materials, builder), instance.shapeToWorld);
     if (!options.alphas) continue;
     drawer.silhouetteness(i, alphas);
     if (!alphas.empty()) place(edgesJson(mesh, instance, alphas, builder), instance.shapeToWorld);

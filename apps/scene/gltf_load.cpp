@@ -1,6 +1,7 @@
 #include "apps/scene/gltf_load.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "apps/scene/gltf_accessor.h"
@@ -10,6 +11,7 @@
 #include "apps/scene/gltf_nodes.h"
 #include "apps/scene/gltf_uri.h"
 #include "apps/scene/image.h"
+#include "apps/scene/input_file.h"
 #include "raster/base/check.h"
 
 namespace limn::scene {
@@ -45,13 +47,17 @@ std::size_t chargeInstances(GltfDocument& document, const Scene& scene) {
 std::string contentHash(const std::string& fileHash, const GltfDocument& document) {
   constexpr std::size_t kLargestImageFile = 256U << 20;
   std::string hashes = fileHash;
+  std::set<const void*> hashed;  // what several name counts once, so that a small file asks for little
   for (const GltfBuffer& buffer : document.buffers)
-    if (!buffer.owned.empty()) hashes += hashBytes(buffer.owned.data(), buffer.owned.size());
+    if (buffer.source && !buffer.source->empty() && hashed.insert(buffer.source.get()).second)
+      hashes += hashBytes(buffer.source->data(), buffer.source->size());
+  std::set<std::filesystem::path> pictures;
   for (const GltfImage& image : document.images) {
     if (image.uri.empty()) continue;
     std::string problem;
     const std::filesystem::path path = resolveUri(image.uri, image.folder, problem);
     if (!problem.empty()) continue;  // where it is needed, the loader refuses it
+    if (!pictures.insert(path).second) continue;
     if (const auto bytes = readFileBytes(path, kLargestImageFile))
       hashes += hashBytes(bytes->data(), bytes->size());
   }

@@ -9,6 +9,7 @@
 
 #include "apps/scene/gltf_container.h"
 #include "apps/scene/gltf_uri.h"
+#include "apps/scene/input_file.h"
 
 namespace limn::scene {
 namespace {
@@ -21,10 +22,22 @@ Json& listOf(Json& json, const char* name) {
   return found != json.end() && found->is_array() ? *found : none;
 }
 
+/// The number of a set, as the loader takes it; 0 for what is none, which stands where the loader does not look.
+int setOf(const Json& json) {
+  constexpr double kLastSet = 255.0;
+  const double number = json.is_number() ? json.get<double>() : 0.0;
+  return number >= 0.0 && number <= kLastSet ? static_cast<int>(number) : 0;
+}
+
+/// Extensions that limn does not know are kept, so the sets that they ask for are kept too; nothing draws extras.
 int highestSet(const Json& json) {
-  int highest = json.is_object() && json.contains("texCoord") ? json["texCoord"].get<int>() : 0;
-  if (json.is_structured())
-    for (const auto& item : json.items()) highest = std::max(highest, highestSet(item.value()));
+  int highest = 0;
+  for (const auto& item : json.items()) {
+    if (item.key() == "texCoord")
+      highest = std::max(highest, setOf(item.value()));
+    else if (item.value().is_structured() && item.key() != "extras")
+      highest = std::max(highest, highestSet(item.value()));
+  }
   return highest;
 }
 
@@ -112,13 +125,17 @@ void GltfRewriter::keepImage(Json& image, std::size_t index) {
   const std::filesystem::path path = resolveUri(external.uri, external.folder, problem);
   if (!problem.empty()) return;  // as missing in the copy as it was
   constexpr std::size_t kLargest = std::size_t{1} << 31;
-  const std::optional<std::vector<std::uint8_t>> bytes = readFileBytes(path, kLargest);
-  if (!bytes) return;  // as missing in the copy as it was
+  auto kept = keptPictures_.find(path);
+  if (kept == keptPictures_.end()) {
+    const std::optional<std::vector<std::uint8_t>> bytes = readFileBytes(path, kLargest);
+    if (!bytes) return;  // as missing in the copy as it was
+    const bool isJpeg = bytes->size() > 1 && (*bytes)[0] == 0xff && (*bytes)[1] == 0xd8;
+    const int added = builder_.addView(*bytes, GlbBuilder::kNoTarget);
+    kept = keptPictures_.emplace(path, KeptPicture{added, isJpeg ? "image/jpeg" : "image/png"}).first;
+  }
   image.erase("uri");
-  image["bufferView"] = builder_.addView(*bytes, GlbBuilder::kNoTarget);
-  if (!image.contains("mimeType"))
-    image["mimeType"] =
-        bytes->size() > 1 && (*bytes)[0] == 0xff && (*bytes)[1] == 0xd8 ? "image/jpeg" : "image/png";
+  image["bufferView"] = kept->second.view;
+  if (!image.contains("mimeType")) image["mimeType"] = kept->second.mimeType;
 }
 
 int GltfRewriter::accessor(std::size_t old) {

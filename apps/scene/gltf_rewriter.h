@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -38,13 +40,20 @@ class GltfRewriter {
   int accessor(std::size_t old);
   int view(std::size_t old);
 
+  /// A file beside the model that has come into the GLB.
+  struct KeptPicture {
+    int view;
+    const char* mimeType;
+  };
+
   GltfDocument document_;
   Json oldAccessors_, oldViews_;
   std::vector<int> newAccessor_, newView_;
+  std::map<std::filesystem::path, KeptPicture> keptPictures_;
   GlbBuilder builder_;
 };
 
-/// The highest set of texture coordinates that a material of the document asks for.
+/// The highest set of texture coordinates, 0 … 255, that a material of the document asks for.
 int highestTexcoordSet(const nlohmann::ordered_json& root);
 
 }  // namespace limn::scene

@@ -16,6 +16,7 @@
 
 #include "apps/scene/gltf_uri.h"
 #include "apps/scene/image.h"
+#include "apps/scene/input_file.h"
 #include "apps/scene/load.h"
 
 namespace limn::scene {
@@ -84,7 +85,7 @@ class ImageReader {
     std::optional<std::vector<std::uint8_t>> bytes = readFileBytes(path, kLargestImageFile);
     if (!bytes) document_.refuse(place_ + "/uri", inQuotes(image_.uri) + " cannot be read; may you read it?");
     file = std::move(*bytes);
-    document_.grow(file.size());
+    document_.grow(path, file.size());
     return file;
   }
 

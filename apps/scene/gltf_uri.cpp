@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <system_error>
 
 namespace limn::scene {
@@ -103,24 +102,16 @@ fs::path resolveUri(std::string_view uri, const fs::path& folder, std::string& p
   problem = uriProblem(uri);
   if (!problem.empty()) return {};
   const fs::path relative(percentDecoded(uri));
-  fs::path path = folder / relative;
+  const fs::path path = folder / relative;
   std::error_code error;
-  if (!fs::is_regular_file(path, error))
+  if (!fs::is_regular_file(path, error)) {
     problem = "names no file beside the model or below; is it missing?";
-  else if (!isInside(fs::canonical(path, error), fs::canonical(folder, error)) || error)
+    return {};
+  }
+  fs::path file = fs::canonical(path, error);
+  if (error || !isInside(file, fs::canonical(folder, error)) || error)
     problem = "is a link that leads out of the model's folder; copy the file there";
-  return path;
-}
-
-std::optional<std::vector<std::uint8_t>> readFileBytes(const fs::path& path, std::size_t limit) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(path, error);
-  std::ifstream stream(path, std::ios::binary);
-  if (error || !stream) return std::nullopt;
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::min<std::uintmax_t>(size, limit)));
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (static_cast<std::size_t>(stream.gcount()) != bytes.size()) return std::nullopt;
-  return bytes;
+  return file;
 }
 
 }  // namespace limn::scene

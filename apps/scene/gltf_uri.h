@@ -18,13 +18,10 @@ std::optional<std::vector<std::uint8_t>> decodeDataUri(std::string_view uri);
 /// What is wrong with the text of a URI, whether it names a file or not: another scheme, an absolute path, "..". Empty: nothing.
 std::string uriProblem(std::string_view uri);
 
-/// The file that a relative URI names, percent-decoded, below `folder`. Returns what is wrong with it in
-/// `problem` (empty: nothing): another scheme, an absolute path, "..", a link that leads out of the folder,
-/// not a file.
+/// The file that a relative URI names, percent-decoded, below `folder`: one path for one file, however the URI spells it
+/// and whatever links it passes. Returns what is wrong with it in `problem` (empty: nothing): another scheme, an absolute
+/// path, "..", a link that leads out of the folder, not a file.
 std::filesystem::path resolveUri(std::string_view uri, const std::filesystem::path& folder,
                                  std::string& problem);
-
-/// Reads at most `limit` bytes. Nothing where the file cannot be read.
-std::optional<std::vector<std::uint8_t>> readFileBytes(const std::filesystem::path& path, std::size_t limit);
 
 }  // namespace limn::scene

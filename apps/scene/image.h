@@ -41,7 +41,7 @@ std::vector<std::uint8_t> encodePng16(const Image16& image, const TextChunks& te
 
 /// Reads a PNG (any kind, converted to RGBA8; 16-bit samples are rounded). Throws InputError
 /// (apps/scene/load.h) naming the file: not a PNG, damaged, or larger than 16384 pixels.
-Image readPng(const std::string& path, TextChunks* texts = nullptr);
+Image readPng(const std::string& path);
 
 /// Decodes a PNG row by row, so that the picture is never in memory as a whole unless it is interlaced. Errors as
 /// readPng, where they are met; `name` is what messages call the file. Borrows `bytes`.
@@ -69,7 +69,7 @@ Image16 readPng16(const std::string& path, bool* is16 = nullptr);
 
 /// What a PNG says of itself, read without decoding it.
 struct PngSummary {
-  int width = 0, height = 0, bitDepth = 0;
+  int width = 0, height = 0;
   TextChunks texts;
 };
 

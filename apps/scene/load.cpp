@@ -9,14 +9,12 @@
 
 #include "apps/scene/builtin.h"
 #include "apps/scene/gltf_load.h"
-#include "apps/scene/gltf_uri.h"
+#include "apps/scene/input_file.h"
 
 namespace limn::scene {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kLargestFile = std::size_t{1} << 40;
 
 ModelFile readStandardInput() {
   return {"standard input",
@@ -33,7 +31,7 @@ ModelFile readNamed(const std::string& name) {
         name + ": there is no such file; built-in models are named builtin:NAME, `limn models` lists them");
   }
   if (!fs::is_regular_file(status)) throw InputError(name + ": is not a file; name a .gltf or .glb file");
-  std::optional<std::vector<std::uint8_t>> bytes = readFileBytes(path, kLargestFile);
+  std::optional<std::vector<std::uint8_t>> bytes = readFileBytes(path);
   if (!bytes) throw InputError(name + ": cannot be read; may you read it?");
   return {name, std::move(*bytes), path.has_parent_path() ? path.parent_path() : fs::path(".")};
 }

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <csetjmp>
 #include <cstring>
-#include <fstream>
+#include <optional>
 #include <span>
 #include <string_view>
 
 #include "apps/scene/image.h"
+#include "apps/scene/input_file.h"
 #include "apps/scene/load.h"
 #include "raster/base/check.h"
 
@@ -23,16 +24,6 @@ constexpr std::size_t kLargestAncillaryChunk = 8U << 20;
 
 std::uint32_t bigEndian32(const std::uint8_t* p) {
   return std::uint32_t{p[0]} << 24 | std::uint32_t{p[1]} << 16 | std::uint32_t{p[2]} << 8 | p[3];
-}
-
-bool readFile(const std::string& path, std::vector<std::uint8_t>& bytes) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
-  if (size < 0) return false;
-  bytes.resize(static_cast<std::size_t>(size));
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(bytes.data()), size);
-  return static_cast<bool>(file);
 }
 
 /// Everything that libpng's jumps pass over: it must outlive them.
@@ -106,9 +97,9 @@ bool readRow(PngReader& reader, png_bytep row, bool isLast) {
 }
 
 std::vector<std::uint8_t> fileOrRefused(const std::string& path) {
-  std::vector<std::uint8_t> file;
-  if (!readFile(path, file)) throw InputError(path + ": cannot be read; is the name right?");
-  return file;
+  std::optional<std::vector<std::uint8_t>> file = readFileBytes(path);
+  if (!file) throw InputError(path + ": cannot be read; is the name right?");
+  return std::move(*file);
 }
 
 /// Up to the pixels; asks for RGBA with `bits` per sample.
@@ -131,7 +122,7 @@ void open(const std::string& path, std::span<const std::uint8_t> file, int bits,
 /// them.
 template <class Allocate>
 void decode(const std::string& path, std::span<const std::uint8_t> file, int bits, int& bitDepth,
-            TextChunks* texts, const Allocate& allocate) {
+            const Allocate& allocate) {
   PngReader reader;
   int width = 0, height = 0;
   open(path, file, bits, reader, width, height, bitDepth);
@@ -140,12 +131,6 @@ void decode(const std::string& path, std::span<const std::uint8_t> file, int bit
   std::vector<png_bytep> rows(static_cast<std::size_t>(height));
   for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = pixels + y * stride;
   if (!readRows(reader, rows.data())) refuse(path, "is damaged (" + reader.message + ")");
-
-  if (texts == nullptr) return;
-  png_textp chunks = nullptr;
-  int count = 0;
-  png_get_text(reader.png, reader.info, &chunks, &count);
-  for (int i = 0; i < count; ++i) texts->emplace_back(chunks[i].key, chunks[i].text);
 }
 
 /// Keyword and text of a tEXt or an uncompressed iTXt chunk; others are passed over.
@@ -168,10 +153,10 @@ void collectText(std::string_view type, std::string_view data, TextChunks& texts
 
 }  // namespace
 
-Image readPng(const std::string& path, TextChunks* texts) {
+Image readPng(const std::string& path) {
   Image image;
   int bitDepth = 0;
-  decode(path, fileOrRefused(path), 8, bitDepth, texts, [&](int width, int height) {
+  decode(path, fileOrRefused(path), 8, bitDepth, [&](int width, int height) {
     image.width = width;
     image.height = height;
     image.rgba.resize(4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -233,7 +218,7 @@ void PngRows::next(std::span<std::uint8_t> row) {
 Image16 readPng16(const std::string& path, bool* is16) {
   Image16 image;
   int bitDepth = 0;
-  decode(path, fileOrRefused(path), 16, bitDepth, nullptr, [&](int width, int height) {
+  decode(path, fileOrRefused(path), 16, bitDepth, [&](int width, int height) {
     image.width = width;
     image.height = height;
     image.channels = 4;
@@ -245,10 +230,11 @@ Image16 readPng16(const std::string& path, bool* is16) {
 }
 
 bool inspectPng(const std::string& path, PngSummary& summary) {
-  std::vector<std::uint8_t> file;
-  if (!readFile(path, file) || file.size() < sizeof kSignature ||
-      std::memcmp(file.data(), kSignature, sizeof kSignature) != 0)
+  const std::optional<std::vector<std::uint8_t>> bytes = readFileBytes(path);
+  if (!bytes || bytes->size() < sizeof kSignature ||
+      std::memcmp(bytes->data(), kSignature, sizeof kSignature) != 0)
     return false;
+  const std::vector<std::uint8_t>& file = *bytes;
   bool sawData = false;
   for (std::size_t at = sizeof kSignature; file.size() - at >= kChunkOverhead;) {
     const std::size_t length = bigEndian32(&file[at]);
@@ -260,7 +246,6 @@ bool inspectPng(const std::string& path, PngSummary& summary) {
     if (name == "IHDR" && length == 13) {
       summary.width = static_cast<int>(bigEndian32(type + 4));
       summary.height = static_cast<int>(bigEndian32(type + 8));
-      summary.bitDepth = type[12];
     } else if (name == "tEXt" || name == "iTXt") {
       collectText(name, data, summary.texts);
     } else if (name == "IDAT") {

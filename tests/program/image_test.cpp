@@ -2,12 +2,15 @@
 #include "apps/scene/image.h"
 
 #include <gtest/gtest.h>
+#include <png.h>
 #include <unistd.h>
 
 #include <array>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <random>
 #include <stdexcept>
 #include <thread>
@@ -48,23 +51,37 @@ Image testImage(int width, int height, unsigned seed) {
   return image;
 }
 
+/// What another reader finds.
+TextChunks textsByLibpng(const std::string& path) {
+  const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_init_io(png, file.get());
+  png_read_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
+  png_textp chunks = nullptr;
+  int count = 0;
+  png_get_text(png, info, &chunks, &count);
+  TextChunks texts;
+  for (int i = 0; i < count; ++i) texts.emplace_back(chunks[i].key, chunks[i].text);
+  png_destroy_read_struct(&png, &info, nullptr);
+  return texts;
+}
+
 TEST_F(ImageFile, WhatIsWrittenIsRead) {
   const TextChunks texts = {{"Software", "limn"}, {"Comment", "na\xc3\xafve \xe2\x80\x93 text"}};
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 17}, {33, 1}, {640, 37}}) {
     for (const int level : {0, 1, 6, 12}) {
       const Image image = testImage(width, height, 5);
-      TextChunks read;
       const std::string path = write("a.png", limn::scene::encodePng(image, texts, level));
-      const Image again = limn::scene::readPng(path, &read);
+      const Image again = limn::scene::readPng(path);
       EXPECT_EQ(again.width, width);
       EXPECT_EQ(again.height, height);
       EXPECT_EQ(again.rgba, image.rgba) << width << 'x' << height << " level " << level;
-      EXPECT_EQ(read, texts);
+      EXPECT_EQ(textsByLibpng(path), texts);
       limn::scene::PngSummary summary;
       ASSERT_TRUE(limn::scene::inspectPng(path, summary));
       EXPECT_EQ(summary.width, width);
       EXPECT_EQ(summary.height, height);
-      EXPECT_EQ(summary.bitDepth, 8);
       EXPECT_EQ(summary.texts, texts);
     }
   }
@@ -85,7 +102,6 @@ TEST_F(ImageFile, SixteenBitsKeepEveryBit) {
                   image.samples[static_cast<std::size_t>(channels) * pixel + (channels == 1 ? 0 : c)]);
     limn::scene::PngSummary summary;
     ASSERT_TRUE(limn::scene::inspectPng(path, summary));
-    EXPECT_EQ(summary.bitDepth, 16);
     EXPECT_EQ(summary.texts, (TextChunks{{"near", "1.5"}}));
   }
 }

@@ -162,6 +162,40 @@ TEST_F(Refine, KeepsTexturesAndMaterials) {
   }
 }
 
+TEST_F(Refine, KeepsTheSetsThatMaterialsAskForAndNoOthers) {
+  scene::test::GltfWriter writer = textured();
+  json& material = writer.root["materials"][1];
+  material["extras"] = {{"texCoord", "x"}};
+  material["pbrMetallicRoughness"].erase("baseColorTexture");
+  material["normalTexture"] = {{"index", 0}, {"texCoord", 1}};
+  material["extensions"]["VENDOR_coat"] = {{"coatTexture", {{"index", 0}, {"texCoord", 2}}}};
+  const auto png = scene::encodePng({2, 2, std::vector<std::uint8_t>(16, 90)}, {}, 1);
+  write("four.png", std::string(png.begin(), png.end()));
+  const auto glb = writer.glb();
+  write("sets.glb", std::string(glb.begin(), glb.end()));
+  const Result result = limn({"refine", "sets.glb", "-o", "r.glb"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json document = Glb(contents("r.glb")).document;
+  EXPECT_EQ(document["materials"], writer.root["materials"]);
+  const json& attributes = document["meshes"][0]["primitives"][0]["attributes"];
+  EXPECT_TRUE(attributes.contains("TEXCOORD_2"));
+  EXPECT_FALSE(attributes.contains("TEXCOORD_3"));
+}
+
+TEST_F(Refine, TakesAPictureThatSeveralImagesNameOnce) {
+  const scene::Image four{2, 2, std::vector<std::uint8_t>(16, 90)};
+  const auto png = scene::encodePng(four, {}, 1);
+  write("four.png", std::string(png.begin(), png.end()));
+  scene::test::GltfWriter writer = textured();
+  writer.root["images"] = {{{"uri", "four.png"}}, {{"uri", "./four.png"}}, {{"uri", "f%6Fur.png"}}};
+  const auto glb = writer.glb();
+  write("fold.glb", std::string(glb.begin(), glb.end()));
+  ASSERT_EQ(limn({"refine", "fold.glb", "-o", "r.glb"}).status, 0);
+  const json images = Glb(contents("r.glb")).document["images"];
+  ASSERT_EQ(images.size(), 3U);
+  for (const json& image : images) EXPECT_EQ(image, images[0]);
+}
+
 TEST_F(Refine, RefusesWhatCannotBe) {
   EXPECT_EQ(limn({"refine", "builtin:pawn"}).status, 2);
   EXPECT_EQ(limn({"refine", "builtin:pawn", "-o", "a.glb", "--frame", "2"}).status, 2);

@@ -28,8 +28,10 @@ TEST_F(Render, AFrameSaysWhatItIsAndHowToDrawItAgain) {
                               "#336699", "--samples", "8", "--azimuth", "-75.5", "--hash"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "");
-  limn::scene::TextChunks texts;
-  const limn::scene::Image image = limn::scene::readPng(path("a.png"), &texts);
+  limn::scene::PngSummary summary;
+  ASSERT_TRUE(limn::scene::inspectPng(path("a.png"), summary));
+  const limn::scene::TextChunks& texts = summary.texts;
+  const limn::scene::Image image = limn::scene::readPng(path("a.png"));
   EXPECT_EQ(image.width, 60);
   EXPECT_EQ(image.height, 40);
   EXPECT_EQ(result.out, "1 " + limn::scene::pixelHash(image) + "\n");
@@ -81,9 +83,10 @@ TEST_F(Render, OverlaysAreDrawnInOneOrderAndNamedInThePicture) {
   EXPECT_EQ(pictures.size(), 9U);
   const Result all = limn(plain + Words{"--overlay", "contour,wire", "-o", "a.png"});
   EXPECT_EQ(limn(plain + Words{"--overlay", "wire,contour"}).out, all.out);
-  limn::scene::TextChunks texts;
-  limn::scene::readPng(path("a.png"), &texts);
-  EXPECT_NE(texts.at(1).second.find(" --overlay wire,contour"), std::string::npos) << texts[1].second;
+  limn::scene::PngSummary summary;
+  ASSERT_TRUE(limn::scene::inspectPng(path("a.png"), summary));
+  EXPECT_NE(summary.texts.at(1).second.find(" --overlay wire,contour"), std::string::npos)
+      << summary.texts[1].second;
   const Result misspelt = limn(plain + Words{"--overlay", "wire,edge"});
   EXPECT_EQ(misspelt.status, 2);
   EXPECT_NE(misspelt.err.find("edges"), std::string::npos) << misspelt.err;

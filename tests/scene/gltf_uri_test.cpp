@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "apps/scene/gltf_document.h"
 #include "tests/scene/gltf_writer.h"
 
 namespace limn::scene {
@@ -13,6 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::GltfWriter;
+using test::json;
 
 class Folder : public testing::Test {
  protected:
@@ -50,6 +52,15 @@ TEST_F(Folder, FilesBesideAndBelowAreFound) {
   EXPECT_NE(problemOf("below").find("names no file"), std::string::npos);
 }
 
+TEST_F(Folder, AFileHasOnePathHoweverItIsNamed) {
+  fs::create_symlink("a b.bin", root_ / "models" / "inside.bin");
+  std::string problem;
+  const fs::path path = resolveUri("a%20b.bin", root_ / "models", problem);
+  EXPECT_EQ(path, fs::canonical(root_ / "models" / "a b.bin"));
+  for (const char* uri : {"a b.bin", "./a b.bin", "inside.bin"})
+    EXPECT_EQ(resolveUri(uri, root_ / "models", problem), path) << uri;
+}
+
 TEST_F(Folder, NothingElseIs) {
   const std::string absolute = (root_ / "secret.bin").string();
   for (const std::string& uri :
@@ -73,6 +84,36 @@ TEST_F(Folder, AGltfReadsItsBufferBesideIt) {
   EXPECT_THROW(load(file.string()), InputError);
   EXPECT_THROW(load((root_ / "models").string()), InputError);
   EXPECT_THROW(load((root_ / "none.gltf").string()), InputError);
+}
+
+TEST_F(Folder, BuffersShareTheFileThatTheyName) {
+  GltfWriter writer;
+  writer.addTriangle();
+  const std::string bytes(writer.binary.begin(), writer.binary.end());
+  write(root_ / "models" / "triangle.bin", bytes + std::string(1000, 'x'));
+  const json whole = {{"byteLength", 36}, {"uri", "triangle.bin"}},
+             more = {{"byteLength", 1000}, {"uri", "./triangle.bin"}};
+  writer.root["buffers"] = {whole, more, whole};
+  const std::string text = writer.root.dump();
+  const GltfDocument document("test.gltf", {text.begin(), text.end()}, root_ / "models");
+  EXPECT_EQ(document.inputBytes(), text.size() + 1000);  // as far as the longest buffer, once
+  for (const GltfBuffer& buffer : document.buffers) {
+    EXPECT_EQ(buffer.bytes->data(), document.buffers[0].bytes->data());
+    EXPECT_EQ(buffer.bytes->size(), buffer.length);
+  }
+  EXPECT_EQ(std::string(document.buffers[2].bytes->begin(), document.buffers[2].bytes->end()), bytes);
+}
+
+TEST_F(Folder, TheBudgetGrowsOncePerFile) {
+  const std::string text = R"({"asset":{"version":"2.0"}})";
+  GltfDocument document("test.gltf", {text.begin(), text.end()}, root_ / "models");
+  constexpr std::size_t kMiB = 1U << 20;
+  document.grow("a", kMiB);
+  EXPECT_NO_THROW(document.checkRoom(400 * kMiB, "/images/0"));
+  document.grow("a", kMiB);
+  EXPECT_THROW(document.checkRoom(500 * kMiB, "/images/1"), InputError);
+  document.grow("b", kMiB);
+  EXPECT_NO_THROW(document.checkRoom(500 * kMiB, "/images/2"));
 }
 
 TEST(DataUri, DecodesBase64AndNothingElse) {
