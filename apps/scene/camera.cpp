@@ -22,7 +22,8 @@ constexpr double kSmallestRadius =
 /// Edge curves leave the coarse mesh by at most half its bounding radius (cubic control points lie within a
 /// third of an edge from their chord), so this much around its centre is never clipped.
 constexpr double kDepthSlack = 1.5;
-constexpr double kDeepestRatio = 4096.0;  // far to near where the eye is inside the scene
+constexpr double kDeepestRatio = 4096.0;   // far to near where the eye is inside the scene
+constexpr double kLeastDepthRange = 1e-6;  // of the near plane: a difference that floats still show
 
 bool isLegal(double x) {
   return std::abs(x) <= kLargestCoordinate;
@@ -70,6 +71,7 @@ void setDepthRange(const Sphere& bounds, const glm::dmat4& worldToView, double a
   }
   if (atLeast > 0.0) nearPlane = std::max(nearPlane, atLeast);
   if (!(nearPlane < farPlane)) farPlane = nearPlane + reach;  // all of it before the file's near plane
+  farPlane = std::max(farPlane, nearPlane + kLeastDepthRange * std::abs(nearPlane));
   projection.nearPlane = static_cast<float>(nearPlane);
   projection.farPlane = static_cast<float>(farPlane);
 }
@@ -154,11 +156,13 @@ CameraView makeCamera(const Camera& camera, const glm::dmat4& nodeToWorld, const
   const glm::dvec3 eye(nodeToWorld[3]);
   require(isLegal(eye), "the camera's position must be finite and at most 1e18");
   const double backLength = glm::length(glm::dvec3(nodeToWorld[2]));
-  require(backLength > 0.0, "the camera's node has no direction: its scale is zero");
+  require(backLength > 0.0 && isLegal(backLength),
+          "the camera's node has no direction: its scale is zero or beyond 1e18");
   const glm::dvec3 back = glm::dvec3(nodeToWorld[2]) / backLength;
   const glm::dvec3 upwards = glm::dvec3(nodeToWorld[1]) - back * glm::dot(back, glm::dvec3(nodeToWorld[1]));
   const double upLength = glm::length(upwards);
-  require(upLength > 0.0, "the camera's node has no upright direction: its scale is zero");
+  require(upLength > 0.0 && isLegal(upLength),
+          "the camera's node has no upright direction: its scale is zero or beyond 1e18");
   const glm::dvec3 up = upwards / upLength;
 
   CameraView view;

@@ -13,9 +13,13 @@ constexpr float kLambert = 0.318309886f;
 // The file has no ambient light; a little keeps what no lamp reaches from turning black.
 constexpr float kFileAmbient = 0.03f;
 
+/// Scaled by a power of two first: squares neither overflow nor vanish, and nothing is rounded.
 glm::vec3 unitOr(const glm::dvec3& v, const glm::vec3& otherwise) {
-  const double square = glm::dot(v, v);
-  return square > 0.0 ? glm::vec3(v / std::sqrt(square)) : otherwise;
+  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (!(largest > 0.0 && std::isfinite(largest))) return otherwise;
+  const int exponent = std::ilogb(largest);
+  const glm::dvec3 scaled(std::ldexp(v.x, -exponent), std::ldexp(v.y, -exponent), std::ldexp(v.z, -exponent));
+  return glm::vec3(scaled / std::sqrt(glm::dot(scaled, scaled)));
 }
 
 raster::Light fromFile(const Light& light, const glm::dmat4& lightToView) {

@@ -201,8 +201,13 @@ TEST(FileCamera, IgnoresScaleAndKeepsItsPlace) {
   EXPECT_NEAR(p.x, 32, 1e-12);
   EXPECT_NEAR(p.y, 32, 1e-12);
   EXPECT_NEAR(-(scaled.worldToView * glm::dvec4(1, 2, 0, 1)).z, 10, 1e-12);
-  node[2] = glm::dvec4(0.0);
-  EXPECT_THROW(limn::scene::makeCamera(camera, node, sphere, 64, 64), std::invalid_argument);
+  for (const double scale : {0.0, 1e19, 1e160}) {  // squares of the last are no numbers
+    for (const int axis : {1, 2}) {
+      glm::dmat4 lost = node;
+      lost[axis] *= scale;
+      EXPECT_THROW(limn::scene::makeCamera(camera, lost, sphere, 64, 64), std::invalid_argument) << scale;
+    }
+  }
 }
 
 TEST(FileCamera, KeepsItsOwnNearAndFarPlanes) {
@@ -212,6 +217,27 @@ TEST(FileCamera, KeepsItsOwnNearAndFarPlanes) {
   const Projection p = limn::scene::makeCamera(camera, glm::dmat4(1.0), {{0, 0, -5}, 1}, 64, 64).projection;
   EXPECT_FLOAT_EQ(p.nearPlane, 4.5f);
   EXPECT_FLOAT_EQ(p.farPlane, 5.5f);
+}
+
+TEST(FileCamera, PlanesThatFloatsCannotTellApartAreMovedApart) {
+  struct Case {
+    double nearPlane, farPlane;
+  };
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const Case& c :
+       {Case{1e8, infinity}, Case{1.0, 1.00000001}, Case{1e38, infinity}, Case{4.5, 4.5000001}})
+    for (const bool perspective : {true, false}) {
+      limn::scene::Camera camera;
+      camera.perspective = perspective;
+      camera.xmag = camera.ymag = 1.0;
+      camera.nearPlane = c.nearPlane;
+      camera.farPlane = c.farPlane;
+      const Projection p =
+          limn::scene::makeCamera(camera, glm::dmat4(1.0), {{0, 0, -5}, 10}, 64, 64).projection;
+      EXPECT_FLOAT_EQ(p.nearPlane, static_cast<float>(c.nearPlane));
+      EXPECT_LT(p.nearPlane, p.farPlane);
+      EXPECT_TRUE(std::isfinite(p.farPlane));
+    }
 }
 
 TEST(TurnAbout, QuarterTurnsAreExactAndCounterClockwise) {

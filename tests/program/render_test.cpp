@@ -199,6 +199,18 @@ TEST_F(Render, StatisticsAddUp) {
     EXPECT_GE(s["milliseconds"][stage], 0.0) << stage;
 }
 
+TEST_F(Render, ALightIsADirectionHoweverLong) {
+  const Words frame = {"render", "builtin:pawn", "--size", "64x48", "--hash", "--light"};
+  const Result usual = limn(frame + Words{"0.5,1,0.25"});
+  ASSERT_EQ(usual.status, 0) << usual.err;
+  // Times powers of two, so that the direction is the same to the last bit.
+  EXPECT_EQ(limn(frame + Words{"2,4,1"}).out, usual.out);
+  EXPECT_EQ(limn(frame + Words{"5.357543035931337e+300,1.0715086071862673e+301,2.6787715179656683e+300"}).out,
+            usual.out);
+  EXPECT_EQ(limn(frame + Words{"1.0451361413042083e-199,2.0902722826084166e-199,5.225680706521042e-200"}).out,
+            usual.out);
+}
+
 TEST_F(Render, OptionsChangeThePictureTheyShould) {
   const Words frame = {"render", "builtin:pawn", "--size", "64x48", "--hash"};
   const std::string plain = limn(frame).out;
