@@ -72,31 +72,36 @@ class Descriptor {
   int descriptor_;
 };
 
-/// A file under a temporary name beside its target; removed unless published.
-class NamedTemporary {
+/// A temporary name for a file beside its target; removed unless published.
+class TemporaryName {
  public:
-  explicit NamedTemporary(const std::string& target) : target_(target), name_(nameBeside(target)) {
+  /// `create` makes a file of the name that it is given, and says whether it could.
+  template <class Create>
+  TemporaryName(const std::string& target, const Create& create)
+      : target_(target), name_(nameBeside(target)) {
     TemporaryNames& registry = temporaryNames();
     const std::lock_guard lock(registry.mutex);
-    descriptor_.emplace(::open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode));
-    if (descriptor_->get() < 0) fail(target_, "cannot be created", errno);
     registry.names.push_back(name_);
+    isThere_ = create(name_.c_str());
   }
-  ~NamedTemporary() {
-    if (!published_) ::unlink(name_.c_str());
-    forget();
+  ~TemporaryName() {
+    if (isThere_) ::unlink(name_.c_str());
+    TemporaryNames& registry = temporaryNames();
+    const std::lock_guard lock(registry.mutex);
+    std::erase(registry.names, name_);
   }
-  NamedTemporary(const NamedTemporary&) = delete;
-  NamedTemporary& operator=(const NamedTemporary&) = delete;
+  TemporaryName(const TemporaryName&) = delete;
+  TemporaryName& operator=(const TemporaryName&) = delete;
 
-  int descriptor() const { return descriptor_->get(); }
+  bool isThere() const { return isThere_; }
 
+  /// Only rename replaces a file in one step.
   void publish() {
-    if (descriptor_->close() != 0) fail(target_, "could not be written", errno);
     if (::rename(name_.c_str(), target_.c_str()) != 0) fail(target_, "could not be put in place", errno);
-    published_ = true;
+    isThere_ = false;
   }
 
+ private:
   /// ".NAME.limn-PID-COUNT" in the target's directory: hidden, and unlike any name that a pattern produces.
   static std::string nameBeside(const std::string& target) {
     static std::atomic<unsigned> count{0};
@@ -106,16 +111,8 @@ class NamedTemporary {
            std::to_string(::getpid()) + "-" + std::to_string(++count);
   }
 
- private:
-  void forget() {
-    TemporaryNames& registry = temporaryNames();
-    const std::lock_guard lock(registry.mutex);
-    std::erase(registry.names, name_);
-  }
-
   std::string target_, name_;
-  std::optional<Descriptor> descriptor_;
-  bool published_ = false;
+  bool isThere_ = false;
 };
 
 std::string directoryOf(const std::string& path) {
@@ -132,24 +129,27 @@ bool writeThroughNameless(const std::string& path, const void* bytes, std::size_
   writeAll(file.get(), path, bytes, count);
 
   const std::string self = "/proc/self/fd/" + std::to_string(file.get());
-  const auto linkAs = [&](const std::string& name) {
-    return ::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
+  const auto linkAs = [&](const char* name) {
+    return ::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
   };
-  if (linkAs(path)) return true;
+  if (linkAs(path.c_str())) return true;
   if (errno != EEXIST) return false;
-  // Only rename replaces a file in one step, and it wants a name.
-  const std::string name = NamedTemporary::nameBeside(path);
-  if (!linkAs(name)) return false;
-  if (::rename(name.c_str(), path.c_str()) == 0) return true;
-  const int error = errno;
-  ::unlink(name.c_str());
-  fail(path, "could not be put in place", error);
+  TemporaryName name(path, linkAs);
+  if (!name.isThere()) return false;
+  name.publish();
+  return true;
 }
 
 void writeThroughNamed(const std::string& path, const void* bytes, std::size_t count) {
-  NamedTemporary file(path);
-  writeAll(file.descriptor(), path, bytes, count);
-  file.publish();
+  std::optional<Descriptor> file;
+  TemporaryName name(path, [&file](const char* temporary) {
+    file.emplace(::open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kFileMode));
+    return file->get() >= 0;
+  });
+  if (!name.isThere()) fail(path, "cannot be created", errno);
+  writeAll(file->get(), path, bytes, count);
+  if (file->close() != 0) fail(path, "could not be written", errno);
+  name.publish();
 }
 
 void writeToDevice(const std::string& path, const void* bytes, std::size_t count) {

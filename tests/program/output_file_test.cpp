@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 namespace {
 
@@ -92,6 +95,22 @@ TEST_F(OutputFile, AFullDeviceIsNamedAndNotReplaced) {
   EXPECT_NE(message.find("/dev/full"), std::string::npos);
   EXPECT_NE(message.find("No space left"), std::string::npos) << message;
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
+}
+
+TEST_F(OutputFile, NoTemporaryNameIsMadeOnceWritesAreAbandoned) {
+  writeFileWhole(path("a"), "old", 3);
+  const pid_t child = ::fork();
+  if (child == 0) {  // writes are held back for good, in a process of its own
+    limn::scene::abandonWrites();
+    std::thread([this] { writeFileWhole(path("a"), "new", 3); }).detach();
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(contents(path("a")), "old");
+  EXPECT_EQ(fileCount(), 1U);
 }
 
 TEST_F(OutputFile, MakesDirectories) {
