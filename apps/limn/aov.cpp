@@ -64,6 +64,15 @@ void wantPlanes(const std::vector<Aov>& aovs, scene::Planes& planes) {
   }
 }
 
+std::size_t bytesPerPixel(const std::vector<Aov>& aovs) {
+  scene::Planes planes;
+  wantPlanes(aovs, planes);
+  constexpr std::size_t kRgba = 4;
+  return kRgba + (planes.wantsDepth ? sizeof(planes.depth[0]) : 0) +
+         (planes.wantsNormals ? sizeof(planes.normals[0]) : 0) +
+         (planes.wantsIds ? sizeof(planes.ids[0]) : 0);
+}
+
 scene::Image16 aovImage(Aov aov, const scene::Planes& planes, const scene::Image& picture,
                         const Projection& projection, std::size_t triangles, scene::TextChunks& texts) {
   const std::size_t pixels =

@@ -16,6 +16,8 @@ const std::string& aovName(Aov aov);
 /// "depth,normal,id" or some of them. Throws UsageError.
 std::vector<Aov> parseAovs(std::string_view text);
 void wantPlanes(const std::vector<Aov>& aovs, scene::Planes& planes);
+/// Bytes per pixel that a picture and its planes take.
+std::size_t bytesPerPixel(const std::vector<Aov>& aovs);
 
 /// The picture of one plane and the text chunks that explain its values:
 ///   depth   grey: 65535·(depth - near)/(far - near), 65535 where nothing was drawn

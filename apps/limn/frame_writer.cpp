@@ -50,7 +50,7 @@ FrameFile inspectFrame(const std::string& path, const std::string& job, std::str
 FrameWriter::FrameWriter(const Job& job, const RenderOptions& options, const OutputPattern* pattern,
                          int frames, std::size_t triangles)
     : job_(job), options_(options), pattern_(pattern), triangles_(triangles) {
-  if (options.manifest) records_.resize(static_cast<std::size_t>(frames));
+  if (options.manifest && pattern != nullptr) records_.resize(static_cast<std::size_t>(frames));
 }
 
 bool FrameWriter::isThere(Picture& picture) const {
@@ -101,6 +101,15 @@ void FrameWriter::writeAov(Picture& picture, Aov aov, WriterTimes& times) {
 }
 
 void FrameWriter::finish(Picture& picture) {
+  try {
+    finishOrThrow(picture);
+  } catch (...) {
+    standardOutput_.abandon();  // whatever failed: its turn will never come
+    throw;
+  }
+}
+
+void FrameWriter::finishOrThrow(Picture& picture) {
   WriterTimes times;
   const bool writes = pattern_ != nullptr && !picture.existing;
   if (!picture.existing) {

@@ -42,11 +42,12 @@ class FrameWriter {
   void finish(Picture& picture);
 
   const WriterTimes& times() const { return times_; }
-  /// By position in the list of this run; empty unless a manifest is wanted.
+  /// By position in the list of this run; empty unless a manifest is wanted and files are written.
   const std::vector<ManifestFrame>& records() const { return records_; }
 
  private:
   std::string aovJob(int frame, Aov aov) const { return job_.text(frame) + " --aov " + aovName(aov); }
+  void finishOrThrow(Picture& picture);
   void writePicture(const Picture& picture, WriterTimes& times);
   void writeAov(Picture& picture, Aov aov, WriterTimes& times);
 

@@ -16,7 +16,6 @@
 namespace limn::program {
 namespace {
 
-constexpr double kMostFrames = 1e7;
 /// (B-A)·F is a count; what rounding takes from a whole number is given back.
 constexpr double kRounding = 1e-9;
 
@@ -89,21 +88,38 @@ std::string refinementText(const silhouette::Parameters& p) {
   return text;
 }
 
+/// What limn::require says of a camera, without the function that said it.
+[[noreturn]] void refuseCamera(const std::invalid_argument& error, const std::string& where) {
+  const std::string text = error.what();
+  const std::size_t colon = text.find(": ");
+  throw UsageError("the camera cannot be used" + where + ": " +
+                   (colon == std::string::npos ? text : text.substr(colon + 2)));
+}
+
 }  // namespace
 
 Job::Job(const scene::Scene& scene, const JobOptions& options) : scene_(scene), options_(options) {
   resolveAnimation();
   resolveCamera();
   bounds_ = boundsOfAllFrames();
+  resolveLookAt();
+  text_ = describe();
+}
+
+void Job::resolveLookAt() {
   const JobOptions& o = options_;
   if (o.eye) {
     lookAt_ = {*o.eye, o.target.value_or(bounds_.center), o.up.value_or(glm::dvec3(0.0, 1.0, 0.0)),
                o.fovDegrees, o.orthoHeight};
-  } else if (camera_ < 0) {
+    return;
+  }
+  if (camera_ >= 0) return;
+  try {
     lookAt_ = scene::frameSphere(bounds_, o.width, o.height, o.azimuthDegrees, o.elevationDegrees, o.zoom,
                                  o.fovDegrees, o.orthoHeight);
+  } catch (const std::invalid_argument& error) {
+    refuseCamera(error, "");
   }
-  text_ = describe();
 }
 
 void Job::resolveAnimation() {
@@ -137,8 +153,8 @@ double Job::turnDegrees(int frame) const {
   return options_.turntable > 0 ? 360.0 * (frame - 1) / options_.turntable : 0.0;
 }
 
-void Job::pose(int frame, scene::Pose& pose) const {
-  scene::evaluatePose(scene_, animation_, seconds(frame), pose);
+void Job::pose(int frame, scene::Pose& pose, Workers* workers) const {
+  scene::evaluatePose(scene_, animation_, seconds(frame), pose, workers);
 }
 
 /// One sphere around the spheres of all frames: centred on their common box, so their order does not matter.
@@ -169,6 +185,14 @@ glm::dmat4 Job::turn(int frame) const {
 }
 
 scene::CameraView Job::camera(int frame, const scene::Pose& pose) const {
+  try {
+    return cameraOrThrow(frame, pose);
+  } catch (const std::invalid_argument& error) {
+    refuseCamera(error, frameCount_ > 1 ? " in frame " + std::to_string(frame) : "");
+  }
+}
+
+scene::CameraView Job::cameraOrThrow(int frame, const scene::Pose& pose) const {
   const glm::dmat4 turned = turn(frame);
   const scene::Sphere bounds{glm::dvec3(turned * glm::dvec4(bounds_.center, 1.0)), bounds_.radius};
   scene::CameraView view = camera_ < 0
@@ -228,19 +252,11 @@ std::size_t drawnTriangles(const scene::Scene& scene) {
 }
 
 Job makeJob(const scene::Scene& scene, const JobOptions& options) {
-  try {
-    Job job(scene, options);
-    scene::Pose pose;
-    job.pose(1, pose);
-    job.camera(1, pose);
-    return job;
-  } catch (const std::invalid_argument& error) {
-    // What limn::require says, without the function that said it.
-    const std::string text = error.what();
-    const std::size_t colon = text.find(": ");
-    throw UsageError("the camera cannot be used: " +
-                     (colon == std::string::npos ? text : text.substr(colon + 2)));
-  }
+  Job job(scene, options);
+  scene::Pose pose;
+  job.pose(1, pose);
+  job.camera(1, pose);
+  return job;
 }
 
 }  // namespace limn::program

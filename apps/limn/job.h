@@ -40,7 +40,9 @@ class Job {
   int frameCount() const { return frameCount_; }
   const scene::Sphere& bounds() const { return bounds_; }
 
-  void pose(int frame, scene::Pose& pose) const;
+  /// `workers` as for scene::evaluatePose.
+  void pose(int frame, scene::Pose& pose, Workers* workers = nullptr) const;
+  /// Throws UsageError where the frame's camera cannot be used; an animated one may be so in any frame.
   scene::CameraView camera(int frame, const scene::Pose& pose) const;
   scene::FrameSettings settings(int frame) const;
 
@@ -56,6 +58,8 @@ class Job {
   scene::Sphere boundsOfAllFrames() const;
   glm::dmat4 turn(int frame) const;
   void resolveCamera();
+  void resolveLookAt();
+  scene::CameraView cameraOrThrow(int frame, const scene::Pose& pose) const;
   void resolveAnimation();
   std::string describe() const;
 

@@ -16,7 +16,6 @@ namespace limn::program {
 namespace {
 
 constexpr int kMostThreads = 1024;
-constexpr int kMostFrames = 10'000'000;
 
 /// Options of one group of the help, each read by a function that throws UsageError.
 class Group {
@@ -70,10 +69,13 @@ class Group {
 };
 
 float positive(const std::string& text, bool zeroToo) {
-  const double value = parseNumber(text);
-  if (value < 0.0 || (value == 0.0 && !zeroToo) || value > 1e9)
-    throw UsageError("'" + text + "' is out of range; give a number " + (zeroToo ? "from 0" : "above 0"));
-  return static_cast<float>(value);
+  constexpr double kLargest = 1e9;
+  const double number = parseNumber(text);
+  const float value = static_cast<float>(number);  // 0 for what is too small for a float
+  if (number < 0.0 || number > kLargest || (value == 0.0f && !zeroToo))
+    throw UsageError("'" + text + "' is out of range; give a number " +
+                     (zeroToo ? "from 0 to 1e9" : "above 0, at most 1e9"));
+  return value;
 }
 
 void addModel(CLI::App& app, std::string& model) {

@@ -100,16 +100,16 @@ void Pipeline::drain() {
 
 void InOrder::run(int position, const std::function<void()>& write) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return next_ == position || failed_; });
-  if (failed_) return;
-  try {
-    write();  // the lock is held: nobody else may write anyway
-  } catch (...) {
-    failed_ = true;
-    changed_.notify_all();
-    throw;
-  }
+  changed_.wait(lock, [&] { return next_ == position || abandoned_; });
+  if (abandoned_) return;
+  write();  // the lock is held: nobody else may write anyway
   ++next_;
+  changed_.notify_all();
+}
+
+void InOrder::abandon() {
+  const std::lock_guard lock(mutex_);
+  abandoned_ = true;
   changed_.notify_all();
 }
 

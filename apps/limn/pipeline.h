@@ -69,15 +69,17 @@ class Pipeline {
 /// Lets pictures write to standard output one after the other in the order of their positions.
 class InOrder {
  public:
-  /// Waits until all before `position` are through, then calls `write`. After a failure of one, the later ones throw
-  /// nothing and write nothing.
+  /// Waits until all before `position` are through, then calls `write`. Where `write` throws, abandon() must follow.
   void run(int position, const std::function<void()>& write);
+
+  /// One picture failed, in its turn or before: the later ones wait no more, throw nothing and write nothing.
+  void abandon();
 
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
   int next_ = 0;
-  bool failed_ = false;
+  bool abandoned_ = false;
 };
 
 }  // namespace limn::program

@@ -23,8 +23,8 @@ int refine(const RefineOptions& options) {
     throw UsageError("--frame: the job has " + std::to_string(job.frameCount()) + " frames");
 
   scene::Pose pose;
-  job.pose(options.frame, pose);
   scene::FrameDrawer drawer(scene, options.threads);
+  job.pose(options.frame, pose, &drawer.workers());
   drawer.refine(pose, job.camera(options.frame, pose), job.settings(options.frame));
   const std::vector<std::uint8_t> glb =
       scene::exportRefined(source, pose, drawer, {options.alphas, job.text(options.frame)});

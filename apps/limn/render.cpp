@@ -48,15 +48,15 @@ void checkOutput(const RenderOptions& o) {
   if (!o.output) {
     if (!o.hash && !o.dryRun && !o.statistics)
       throw UsageError("no output; name one with -o, like -o picture.png");
-    if (o.manifest || o.skipExisting)
+    if (o.manifest || o.skipExisting || !o.aovs.empty())
       throw UsageError("--manifest, --skip-existing and --aov need files; name them with -o");
     return;
   }
   if (*o.output == "-") {
     if (o.hash)
       throw UsageError("--hash prints on standard output, and so does -o -; write the frames to files");
-    if (o.skipExisting || o.manifest)
-      throw UsageError("--manifest and --skip-existing need files; -o - makes none");
+    if (o.manifest || o.skipExisting || !o.aovs.empty())
+      throw UsageError("--manifest, --skip-existing and --aov need files; -o - makes none");
     if (::isatty(STDOUT_FILENO) == 1 && !o.dryRun)
       throw UsageError("standard output is a terminal; redirect it to a file or a pipe");
     return;
@@ -176,8 +176,8 @@ void makeDirectories(const OutputPattern& pattern, const Selection& selection) {
 void drawFrames(const scene::Scene& scene, const Job& job, const Selection& selection,
                 const RenderOptions& options, FrameWriter& writer, Totals& totals) {
   scene::FrameDrawer drawer(scene, options.threads);
-  const std::size_t bytes =
-      4 * static_cast<std::size_t>(options.job.width) * static_cast<std::size_t>(options.job.height);
+  const std::size_t bytes = bytesPerPixel(options.aovs) * static_cast<std::size_t>(options.job.width) *
+                            static_cast<std::size_t>(options.job.height);
   Pipeline pipeline(options.threads, bytes, [&](Picture& picture) { writer.finish(picture); });
   Progress progress(selection.count(), options.quiet);
   scene::Pose pose;
@@ -191,7 +191,7 @@ void drawFrames(const scene::Scene& scene, const Job& job, const Selection& sele
       ++totals.skipped;
     } else {
       const Clock::time_point start = Clock::now();
-      job.pose(picture->frame, pose);
+      job.pose(picture->frame, pose, &drawer.workers());
       totals.poseMs += millisecondsSince(start);
       const scene::CameraView camera = job.camera(picture->frame, pose);
       picture->projection = camera.projection;
@@ -238,9 +238,9 @@ int render(const RenderOptions& options) {
   drawFrames(scene, job, selection, options, writer, totals);
   totals.totalMs = millisecondsSince(start);
 
+  if (options.dryRun) return kDone;
   if (options.statistics) writeText(*options.statistics, statisticsJson(totals, writer.times(), options));
-  if (options.manifest && writes)
-    writeText(*options.manifest, manifestOf(job, selection, options, writer).json());
+  if (options.manifest) writeText(*options.manifest, manifestOf(job, selection, options, writer).json());
   return kDone;
 }
 

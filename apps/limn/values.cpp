@@ -13,8 +13,6 @@
 namespace limn::program {
 namespace {
 
-constexpr int kMostFrames = 10'000'000;
-
 std::string quoted(std::string_view text) {
   return "'" + std::string(text) + "'";
 }

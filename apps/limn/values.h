@@ -19,6 +19,8 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+inline constexpr int kMostFrames = 10'000'000;  ///< of a job
+
 double parseNumber(std::string_view text);
 long parseInteger(std::string_view text, long least, long most);
 

@@ -433,9 +433,8 @@ void FrameDrawer::silhouetteness(std::size_t instance, std::vector<float>& alpha
   if (task.refiner != nullptr) task.refiner->silhouetteness(task.view, state_->parameters, alphas);
 }
 
-const silhouette::RefinedStream& FrameDrawer::stream(std::size_t instance) const {
-  require(instance < state_->instances.size(), "no such instance in the last frame");
-  return state_->instances[instance].stream;
+Workers& FrameDrawer::workers() {
+  return state_->workers;
 }
 
 }  // namespace limn::scene

@@ -32,7 +32,7 @@ struct FrameSettings {
 struct FrameStatistics {
   raster::Statistics raster;
   silhouette::RefineReport refine;  ///< summed over the instances
-  double poseMs = 0, refineMs = 0, rasterMs = 0, totalMs = 0;
+  double refineMs = 0, rasterMs = 0, totalMs = 0;
 };
 
 /// Planes beside the picture, one value per pixel, rows as in the picture. What is not wanted stays as it is.
@@ -63,8 +63,8 @@ class FrameDrawer {
   /// Silhouetteness of the edges of its topology in that frame; empty where it was not visible.
   void silhouetteness(std::size_t instance, std::vector<float>& alphas);
 
-  /// The refined stream of one instance in the last frame drawn, in the mesh's space.
-  const silhouette::RefinedStream& stream(std::size_t instance) const;
+  /// The threads that draw, for whoever poses the scene between frames.
+  Workers& workers();
 
  private:
   struct State;

@@ -26,7 +26,10 @@ struct Drawn {
     scene::FrameDrawer drawer(frame.scene, threads, tuning);
     drawer.draw(frame.pose, frame.camera, frame.settings, image, nullptr, &planes);
     for (std::size_t i = 0; i < frame.pose.instances.size(); ++i)
-      if (frame.pose.instances[i].visible) check(drawer.stream(i).isConsistent(drawer.instance(i).shape));
+      if (frame.pose.instances[i].visible) {
+        const scene::RefinedInstance instance = drawer.instance(i);
+        check(instance.stream->isConsistent(instance.shape));
+      }
   }
 };
 

@@ -9,6 +9,7 @@
 
 #include "apps/scene/image.h"
 #include "tests/program/run_program.h"
+#include "tests/scene/gltf_writer.h"
 
 namespace {
 
@@ -58,7 +59,9 @@ TEST_F(Faults, OfUsage) {
   expect({"render", "-o", frame, "--eye", "1,2,3", "--target", "1,2,3"}, 2, "same point");
   expect({"render", "-o", frame, "--eye", "0,9,0", "--target", "0,0,0"}, 2, "line of sight");
   expect({"render", "-o", frame, "--fov", "180"}, 2, "below 180");
-  expect({"render", "-o", frame, "--zoom", "0"}, 2, "above 0");
+  expect({"render", "-o", frame, "--zoom", "0"}, 2, "above 0, at most 1e9");
+  expect({"render", "-o", frame, "--zoom", "1e-60"}, 2, "above 0, at most 1e9");
+  expect({"render", "-o", frame, "--tolerance", "1e10"}, 2, "from 0 to 1e9");
   expect({"render", "-o", frame, "--ortho", "-2"}, 2, "above 0");
   expect({"render", "-o", frame, "--azimuth", "nan"}, 2, "not a finite number");
   expect({"render", "-o", frame, "--turntable", "5"}, 2, "frames/%04d.png");
@@ -66,6 +69,8 @@ TEST_F(Faults, OfUsage) {
   expect({"render", "-o", frame, "--frames", "2"}, 2, "has one frame");
   expect({"render", "-o", "a.jpg"}, 2, "limn writes PNG");
   expect({"render", "-o", "-", "--hash"}, 2, "standard output");
+  expect({"render", "-o", "-", "--aov", "depth"}, 2, "--aov need files");
+  expect({"render", "--hash", "--aov", "depth"}, 2, "--aov need files");
   expect({"render", "-o", frame, "--camera", "0"}, 2, "no camera");
   expect({"render", "-o", frame, "--animation", "Run"}, 2, "no animation");
   expect({"render", "-o", frame, "--fps", "10"}, 2, "--animation");
@@ -73,11 +78,30 @@ TEST_F(Faults, OfUsage) {
   EXPECT_TRUE(names("").empty());
 }
 
+TEST_F(Faults, OfACameraInOneFrame) {
+  limn::scene::test::GltfWriter writer;
+  writer.addTriangle();
+  writer.root["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.1}}}}};
+  writer.root["nodes"].push_back({{"camera", 0}, {"translation", {0, 0, 3}}});
+  const int seconds = writer.addArray<float>({0, 1}, "SCALAR");
+  const int scales = writer.addArray<float>({1, 1, 1, 0, 0, 0}, "VEC3");
+  writer.root["animations"] = {
+      {{"samplers", {{{"input", seconds}, {"output", scales}}}},
+       {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "scale"}}}}}}}};
+  const auto glb = writer.glb();
+  write("a.glb", std::string(glb.begin(), glb.end()));
+  const Words job = {"a.glb", "--animation", "0", "--fps", "4", "--camera", "0", "--size", "20x20", "-o"};
+  expect(Words{"render"} + job + Words{"%d.png"}, 2, "the camera cannot be used in frame 5: ");
+  expect(Words{"refine"} + job + Words{"r.glb", "--frame", "5"}, 2, "in frame 5: ");
+  EXPECT_EQ(limn(Words{"render"} + job + Words{"%d.png", "--frames", "1-4"}).status, 0);
+}
+
 TEST_F(Faults, OfInput) {
   expect({"render", "builtin:spher-200", "-o", "a.png"}, 3, "did you mean builtin:sphere-200?");
   expect({"render", "nothing.glb", "-o", "a.png"}, 3, "nothing.glb");
   expect({"info", "nothing.glb"}, 3, "nothing.glb");
   expect({"compare", "no.png", "no.png"}, 3, "no.png");
+  expect({"compare", ".", "."}, 3, "cannot be read");
   EXPECT_TRUE(names("").empty());
 }
 
@@ -105,6 +129,20 @@ TEST_F(Faults, OfOutput) {
     std::filesystem::permissions(path("folder"),
                                  std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
     expect(frame + Words{"-o", "folder/a.png"}, 4, "folder/a.png");
+  }
+}
+
+TEST_F(Faults, AFrameThatCannotBeWrittenEndsTheRun) {
+  for (const Words& more : {Words{}, Words{"--aov", "id"}}) {
+    const std::string blocked = more.empty() ? "f/0002.png" : "f/0002.id.png";
+    std::filesystem::remove_all(path("f"));
+    std::filesystem::create_directories(path(blocked));
+    const Result result = limn(Words{"render", "builtin:cone-70", "--turntable", "8", "--hash", "--compress",
+                                     "12", "--threads", "4", "--size", "300x200", "-o", "f/%04d.png"} +
+                               more);
+    EXPECT_EQ(result.status, 4) << result.err;
+    EXPECT_NE(result.err.find(blocked + ": is a directory"), std::string::npos) << result.err;
+    EXPECT_LE(std::count(result.out.begin(), result.out.end(), '\n'), 1) << result.out;
   }
 }
 

@@ -74,10 +74,15 @@ TEST(Pipeline, AFailureIsRethrownAndTheRestLeftOut) {
     std::atomic<int> finished{0};
     const auto run = [&] {
       Pipeline pipeline(threads, 1000, [&](Picture& picture) {
-        inOrder.run(picture.position, [&] {
-          if (picture.position == 5) throw std::runtime_error("full");
-          ++finished;
-        });
+        try {
+          inOrder.run(picture.position, [&] {
+            if (picture.position == 5) throw std::runtime_error("full");
+            ++finished;
+          });
+        } catch (...) {
+          inOrder.abandon();
+          throw;
+        }
       });
       for (int i = 0; i < 1000; ++i) {
         auto picture = pipeline.acquire();
@@ -90,6 +95,18 @@ TEST(Pipeline, AFailureIsRethrownAndTheRestLeftOut) {
     EXPECT_EQ(finished, 5);
     finished = 0;
   }
+}
+
+TEST(InOrder, APictureThatFailsBeforeItsTurnHoldsUpNobody) {
+  InOrder inOrder;
+  std::atomic<int> written{0};
+  const auto write = [&] { ++written; };
+  inOrder.run(0, write);
+  std::thread second([&] { inOrder.run(2, write); });  // waits for position 1, which never comes
+  inOrder.abandon();
+  second.join();
+  inOrder.run(3, write);
+  EXPECT_EQ(written, 1);
 }
 
 }  // namespace

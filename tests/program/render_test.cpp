@@ -182,6 +182,13 @@ TEST_F(Render, ADryRunChecksAndListsButWritesNothing) {
   EXPECT_EQ(result.out, "4 x/004.png\n7 x/007.png\n");
   EXPECT_TRUE(names("").empty());
   EXPECT_EQ(limn(turntable(3) + Words{"-o", "one.png", "--dry-run"}).status, 2);
+
+  const Words hashes =
+      turntable(3) + Words{"-o", "%d.png", "--hash", "--manifest", "m.json", "--stats", "s.json"};
+  const Result drawn = limn(hashes + Words{"--dry-run"});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_TRUE(names("").empty());
+  EXPECT_EQ(limn(hashes).out, drawn.out);
 }
 
 TEST_F(Render, StatisticsAddUp) {

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "apps/limn/aov.h"
 #include "apps/limn/pattern.h"
 
 namespace {
@@ -52,6 +53,14 @@ TEST(OutputPattern, PutsTheNumberIn) {
 TEST(OutputPattern, RefusesOtherConversions) {
   for (const char* text : {"", "%s.png", "%", "%5d.png", "%0999d", "%d%d", "#-#", "%d-#", "a%"})
     EXPECT_THROW(OutputPattern{text}, UsageError) << text;
+}
+
+TEST(BytesPerPixel, CountsThePlanesThatAreWanted) {
+  using limn::program::Aov;
+  EXPECT_EQ(limn::program::bytesPerPixel({}), 4U);
+  EXPECT_EQ(limn::program::bytesPerPixel({Aov::kDepth}), 8U);
+  EXPECT_EQ(limn::program::bytesPerPixel({Aov::kId, Aov::kNormal}), 20U);
+  EXPECT_EQ(limn::program::bytesPerPixel({Aov::kDepth, Aov::kNormal, Aov::kId}), 24U);
 }
 
 TEST(BesidePath, GoesBeforeTheExtension) {

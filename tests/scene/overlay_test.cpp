@@ -185,8 +185,8 @@ TEST(Overlays, CostTheStreamNothingWhenNotAskedFor) {
   evaluatePose(scene, -1, 0.0, pose);
   const Sphere bounds = boundingSphere(scene, pose);
   drawer.refine(pose, makeCamera(frameSphere(bounds, 64, 64, 0, 0, 1, 30, 0), bounds, 64, 64), settings);
-  EXPECT_GT(drawer.stream(0).triangleCount(), 0U);
-  EXPECT_TRUE(drawer.stream(0).contour.empty());
+  EXPECT_GT(drawer.instance(0).stream->triangleCount(), 0U);
+  EXPECT_TRUE(drawer.instance(0).stream->contour.empty());
 }
 
 }  // namespace
