@@ -34,7 +34,8 @@ TEST(Workers, RefusesNoThreadsAndTooMany) {
 }
 
 TEST(Workers, TakesAsManyAsThereAre) {
-  EXPECT_NO_THROW(limn::Workers(limn::availableThreads()));
+  const limn::Workers workers(limn::availableThreads());
+  EXPECT_EQ(workers.threads(), limn::availableThreads());
 }
 
 }  // namespace
