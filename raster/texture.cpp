@@ -150,6 +150,12 @@ Texture::~Texture() = default;
 Texture::Texture(Texture&&) noexcept = default;
 Texture& Texture::operator=(Texture&&) noexcept = default;
 
+int Texture::width() const {
+  return data_->levels[0].width;
+}
+int Texture::height() const {
+  return data_->levels[0].height;
+}
 bool Texture::hasTransparency() const {
   return data_->transparent;
 }

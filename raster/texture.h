@@ -41,6 +41,8 @@ class Texture {
   Texture(Texture&&) noexcept;
   Texture& operator=(Texture&&) noexcept;
 
+  int width() const;
+  int height() const;
   bool hasTransparency() const;  ///< some alpha below 255
   std::size_t memoryBytes() const;
 
