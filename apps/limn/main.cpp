@@ -1,5 +1,6 @@
 // limn: draws glTF models with smooth silhouettes.
 #include <exception>
+#include <iostream>
 #include <new>
 #include <stdexcept>
 
@@ -13,9 +14,8 @@
 
 namespace {
 
-int run(int count, const char* const* arguments) {
+int runCommand(const limn::program::CommandLine& line) {
   using namespace limn::program;
-  const CommandLine line = readCommandLine(count, arguments);
   using Command = CommandLine::Command;
   switch (line.command) {
     case Command::kRender:
@@ -36,6 +36,14 @@ int run(int count, const char* const* arguments) {
       return kDone;
   }
   return kFault;
+}
+
+int run(int count, const char* const* arguments) {
+  const int status = runCommand(limn::program::readCommandLine(count, arguments));
+  // What was printed may still lie in a buffer.
+  if (!std::cout.flush())
+    throw limn::scene::OutputError("standard output could not be written; is the disk full?");
+  return status;
 }
 
 }  // namespace
