@@ -5,6 +5,7 @@
 #include "apps/limn/commands.h"
 #include "apps/limn/job.h"
 #include "apps/limn/values.h"
+#include "apps/scene/gltf_json.h"
 #include "apps/scene/load.h"
 #include "apps/scene/pose.h"
 #include "silhouette/topology.h"
@@ -124,7 +125,7 @@ std::string counted(const Json& count, const std::string& one, const std::string
 
 std::string nameOf(const Json& item, std::size_t index) {
   const auto name = item["name"].get<std::string>();
-  return name.empty() ? std::to_string(index) : std::to_string(index) + " '" + name + "'";
+  return name.empty() ? std::to_string(index) : std::to_string(index) + " " + scene::inQuotes(name);
 }
 
 void printMesh(const Json& mesh, std::size_t index) {

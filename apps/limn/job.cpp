@@ -29,8 +29,12 @@ int indexOf(const std::string& text, const std::vector<Item>& items, const std::
   }
   if (items.empty()) throw UsageError("the model has no " + what + "; leave the option out");
   const bool isNumber = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
-  if (isNumber) return static_cast<int>(parseInteger(text, 0, static_cast<long>(items.size()) - 1));
-  return parseChoice(text, names);
+  try {
+    if (isNumber) return static_cast<int>(parseInteger(text, 0, static_cast<long>(items.size()) - 1));
+    return parseChoice(text, names);
+  } catch (const UsageError& error) {
+    throw UsageError("--" + what + ": " + error.what());
+  }
 }
 
 std::string baseName(const std::string& path) {
@@ -75,10 +79,9 @@ std::string refinementText(const silhouette::Parameters& p) {
   std::string text = " --method " + methodNames()[static_cast<std::size_t>(p.method)];
   if (p.method == Method::kFlat) return text;
   text += p.segments > 0 ? " --segments " + std::to_string(p.segments)
-                         : " --tolerance " + numberText(static_cast<double>(p.tolerance));
+                         : " --tolerance " + numberText(p.tolerance);
   if (p.method == Method::kPatches) {
-    text += p.wedgeDegrees > 0 ? " --wedge " + numberText(static_cast<double>(p.wedgeDegrees))
-                               : " --beta " + numberText(static_cast<double>(p.beta));
+    text += p.wedgeDegrees > 0 ? " --wedge " + numberText(p.wedgeDegrees) : " --beta " + numberText(p.beta);
     text += " --silhouetteness " + silhouettenessNames()[static_cast<std::size_t>(p.silhouetteness)];
   }
   text += " --tangents " + tangentsNames()[static_cast<std::size_t>(p.tangents)];

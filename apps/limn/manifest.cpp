@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 #include "apps/limn/values.h"
 #include "apps/scene/image.h"
@@ -25,15 +26,16 @@ T value(const Json& json, const std::string& pointer, const std::string& path) {
   const Json::json_pointer place(pointer);
   if (!json.contains(place)) refuse(path, pointer + ": is missing");
   try {
-    return json.at(place).get<T>();
-  } catch (const Json::exception&) {
-    refuse(path, pointer + ": is of another kind");
+    if (!std::is_same_v<T, int> || json.at(place).is_number_integer()) return json.at(place).get<T>();
+  } catch (const Json::exception&) {  // said below
   }
+  refuse(path, pointer + ": is of another kind");
 }
 
 Json parseFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw scene::InputError(path + ": cannot be read; is the name right?");
+  if (!file || fs::is_directory(path))
+    throw scene::InputError(path + ": cannot be read as a file; is the name right?");
   try {
     return Json::parse(file);
   } catch (const Json::parse_error& error) {

@@ -189,9 +189,9 @@ void addSilhouetteOptions(CLI::App& app, JobOptions& o) {
              p.segments = static_cast<int>(parseInteger(text, 1, silhouette::kMaxSegments));
            })
       ->excludes(tolerance);
-  CLI::Option* beta = group.add("--beta", "B", "width of the transition between smooth and flat edges",
-                                numberText(static_cast<double>(p.beta)),
-                                [&p](const std::string& text) { p.beta = positive(text, true); });
+  CLI::Option* beta =
+      group.add("--beta", "B", "width of the transition between smooth and flat edges", numberText(p.beta),
+                [&p](const std::string& text) { p.beta = positive(text, true); });
   group
       .add("--wedge", "DEG", "the same by the angle between the faces of each edge", "",
            [&p](const std::string& text) {

@@ -85,6 +85,13 @@ bool readHexColor(std::string_view digits, std::uint32_t& rgba) {
   return full.size() == 8 && error == std::errc() && end == full.data() + full.size();
 }
 
+template <class Float>
+std::string shortestText(Float value) {
+  std::array<char, 32> buffer{};
+  const Float number = value == Float(0) ? Float(0) : value;  // no -0
+  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), number).ptr};
+}
+
 [[noreturn]] void refuseFrames(std::string_view item) {
   throw UsageError(quoted(item) + " is no list of frames; write it like 1-10,15,20-40:2");
 }
@@ -269,10 +276,11 @@ std::vector<int> parseChoices(std::string_view text, std::span<const std::string
 }
 
 std::string numberText(double value) {
-  std::array<char, 32> buffer{};
-  const auto [end, error] =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value == 0.0 ? 0.0 : value);
-  return std::string(buffer.data(), end);
+  return shortestText(value);
+}
+
+std::string numberText(float value) {
+  return shortestText(value);
 }
 
 std::string vectorText(const glm::dvec3& value) {

@@ -75,6 +75,7 @@ std::vector<int> parseChoices(std::string_view text, std::span<const std::string
 
 /// The shortest text that reads back as the same number.
 std::string numberText(double value);
+std::string numberText(float value);
 std::string vectorText(const glm::dvec3& value);
 
 }  // namespace limn::program

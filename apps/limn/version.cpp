@@ -7,6 +7,7 @@
 
 #include <hwy/targets.h>
 #include <CLI/Version.hpp>
+#include <cstdint>
 #include <glm/detail/setup.hpp>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -20,6 +21,14 @@ std::string dotted(unsigned number) {
          std::to_string(number % 100);
 }
 
+/// The best of those that the kernels are made for.
+const char* instructionSet() {
+  const std::int64_t targets = hwy::SupportedTargets();
+  if ((targets & HWY_AVX3) != 0) return "AVX-512";
+  if ((targets & HWY_AVX2) != 0) return "AVX2";
+  return (targets & HWY_SSE4) != 0 ? "SSE4" : "plain C++";
+}
+
 }  // namespace
 
 std::string versionText() {
@@ -30,11 +39,10 @@ std::string versionText() {
 #else
        << "g++ " << __GNUC__ << '.' << __GNUC_MINOR__ << '.' << __GNUC_PATCHLEVEL__
 #endif
-       << ", draws with " << hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets())
-       << "\non oneTBB " << TBB_runtime_version() << ", Highway " << LIMN_HIGHWAY_VERSION << ", GLM "
-       << GLM_VERSION_MAJOR << '.' << GLM_VERSION_MINOR << '.' << GLM_VERSION_PATCH << '.'
-       << GLM_VERSION_REVISION << ",\nCLI11 " << CLI11_VERSION << ", nlohmann-json "
-       << NLOHMANN_JSON_VERSION_MAJOR << '.' << NLOHMANN_JSON_VERSION_MINOR << '.'
+       << ", draws with " << instructionSet() << "\non oneTBB " << TBB_runtime_version() << ", Highway "
+       << LIMN_HIGHWAY_VERSION << ", GLM " << GLM_VERSION_MAJOR << '.' << GLM_VERSION_MINOR << '.'
+       << GLM_VERSION_PATCH << '.' << GLM_VERSION_REVISION << ",\nCLI11 " << CLI11_VERSION
+       << ", nlohmann-json " << NLOHMANN_JSON_VERSION_MAJOR << '.' << NLOHMANN_JSON_VERSION_MINOR << '.'
        << NLOHMANN_JSON_VERSION_PATCH << ",\nlibpng " << dotted(png_access_version_number())
        << ", libdeflate " << LIBDEFLATE_VERSION_STRING << ", xxHash " << dotted(XXH_VERSION_NUMBER)
        << ", tinygltf, stb_image_write";

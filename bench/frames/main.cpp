@@ -36,7 +36,7 @@ void useInstructions(const std::string& name, raster::Tuning& tuning) {
   tuning.scalar = name == "scalar";
   if (tuning.scalar) return;
   const std::map<std::string, std::int64_t> targets{
-      {"SSE4", HWY_SSE4}, {"AVX2", HWY_AVX2}, {"AVX-512", HWY_AVX3}, {"NEON", HWY_NEON}};
+      {"SSE4", HWY_SSE4}, {"AVX2", HWY_AVX2}, {"AVX-512", HWY_AVX3}};
   const std::int64_t target = targets.at(name);
   if ((hwy::SupportedTargets() & target) == 0)
     throw CLI::ValidationError("--simd", "this machine has no " + name);
@@ -72,8 +72,8 @@ Options parse(int argc, char** argv) {
           {"none", raster::Encoding::kNone}, {"srgb", raster::Encoding::kSrgb}}))
       ->default_str("none");
   std::string instructions;
-  app.add_option("--simd", instructions, "only this instruction set: scalar, SSE4, AVX2, AVX-512 or NEON")
-      ->check(CLI::IsMember({"scalar", "SSE4", "AVX2", "AVX-512", "NEON"}));
+  app.add_option("--simd", instructions, "only this instruction set: scalar, SSE4, AVX2 or AVX-512")
+      ->check(CLI::IsMember({"scalar", "SSE4", "AVX2", "AVX-512"}));
   try {
     app.parse(argc, argv);
     if (options.scene.threads < 1) throw CLI::ValidationError("--threads", "is at least 1");
