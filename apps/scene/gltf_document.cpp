@@ -114,6 +114,22 @@ GltfImage readImage(const GltfDocument& document, std::size_t index, const json&
   return image;
 }
 
+// With the place, which tinygltf does not tell.
+void refuseWhatTinygltfDoes(const GltfDocument& file, const json& document) {
+  std::size_t index = 0;
+  for (const json& view : document.value("bufferViews", json::array())) {
+    if (view.value("byteStride", 4) % 4 != 0)
+      file.refuse(jsonPointer("bufferViews", index, "byteStride"), "must be a multiple of 4");
+    ++index;
+  }
+  index = 0;
+  for (const json& camera : document.value("cameras", json::array())) {
+    const std::string kind = textOf(camera, "type");
+    if (!camera.contains(kind)) file.refuse(jsonPointer("cameras", index, kind), "is missing");
+    ++index;
+  }
+}
+
 // Takes out what tinygltf is not to see, and puts what it refuses although glTF allows it into a form that it
 // takes: it refuses index accessors without a view (all zeros), so they get one beyond the file's. Returns
 // the file's number.
@@ -148,6 +164,7 @@ void GltfDocument::parse(std::size_t jsonOffset, std::string_view text, const Fo
       images.push_back(readImage(*this, images.size(), image, folder));
   }
   budget_ = Budget(inputBytes_);
+  refuseWhatTinygltfDoes(*this, document);
   viewCount = adaptForTinygltf(document);
   const std::string checked = document.dump();
   document = nullptr;
@@ -155,7 +172,7 @@ void GltfDocument::parse(std::size_t jsonOffset, std::string_view text, const Fo
   std::string errors, warnings;
   const bool parsed = parser.LoadASCIIFromString(&model, &errors, &warnings, checked.data(),
                                                  static_cast<unsigned int>(checked.size()), "");
-  if (!parsed) refuse("/", errors + "; this is what tinygltf says of it");
+  if (!parsed) refuse("/", "tinygltf cannot read it and says " + inQuotes(errors) + "; write the file anew");
 }
 
 void GltfDocument::readBuffers(const json& described, const Folder& folder, const Binary& binary) {

@@ -119,7 +119,11 @@ Camera readCamera(const GltfDocument& document, std::size_t index) {
   camera.perspective = source.type == "perspective";
   const double zfar = camera.perspective ? source.perspective.zfar : source.orthographic.zfar;
   camera.nearPlane = camera.perspective ? source.perspective.znear : source.orthographic.znear;
-  if (zfar > camera.nearPlane) camera.farPlane = zfar;
+  if (zfar > 0.0) {
+    if (!(zfar > camera.nearPlane))
+      document.refuse(jsonPointer("cameras", index, source.type, "zfar"), "must be larger than znear");
+    camera.farPlane = zfar;
+  }
   if (camera.perspective) {
     camera.yfov = source.perspective.yfov;
     camera.aspect = source.perspective.aspectRatio;
@@ -175,17 +179,12 @@ std::vector<std::uint32_t> readNodes(GltfDocument& document, Scene& scene) {
 
 void checkWorldTransforms(const GltfDocument& document, const Scene& scene,
                           const std::vector<std::uint32_t>& nodeOf) {
-  constexpr double kLargest = 1e30;  // two coordinates of 1e15 multiplied; their squares are doubles still
   Pose pose;
   evaluatePose(scene, -1, 0.0, pose);
   for (std::size_t n = 0; n < nodeOf.size(); ++n) {
-    const glm::dmat4& toWorld = pose.nodeToWorld[nodeOf[n]];
-    for (int c = 0; c < 4; ++c) {
-      for (int r = 0; r < 4; ++r) {
-        if (std::abs(toWorld[c][r]) <= kLargest) continue;
-        document.refuse(jsonPointer("nodes", n), "its transforms multiply to numbers beyond 1e30");
-      }
-    }
+    if (isBeyondNumbers(pose.nodeToWorld[nodeOf[n]]))
+      document.refuse(jsonPointer("nodes", n),
+                      "its transforms multiply to numbers beyond 1e30; scale the scene down");
   }
 }
 

@@ -34,16 +34,11 @@ bool isDrawn(const Scene& scene, std::size_t i) {
 
 /// Neither nothing nor beyond numbers.
 bool isVisible(const glm::dmat4& matrix) {
-  constexpr double kSmallest = 1e-20, kLargest = 1e30;
-  double scale = 0.0, all = 0.0;
-  for (int c = 0; c < 4; ++c) {
-    for (int r = 0; r < 3; ++r) {
-      const double size = std::abs(matrix[c][r]);
-      all += size;  // not finite if one of them is not
-      if (c < 3) scale = std::max(scale, size);
-    }
-  }
-  return all < kLargest && scale > kSmallest;
+  constexpr double kSmallest = 1e-20;
+  double scale = 0.0;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) scale = std::max(scale, std::abs(matrix[c][r]));
+  return scale > kSmallest && !isBeyondNumbers(matrix);
 }
 
 /// The instances and their rest weights; which ones there are depends on the scene alone.
@@ -112,6 +107,14 @@ void forEachPosition(const Scene& scene, const Pose& pose, const Visit& visit) {
 }
 
 }  // namespace
+
+bool isBeyondNumbers(const glm::dmat4& matrix) {
+  constexpr double kLargest = 1e30;  // two coordinates of 1e15 multiplied; their squares are doubles still
+  double all = 0.0;
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 3; ++r) all += std::abs(matrix[c][r]);  // not finite if one of them is not
+  return !(all < kLargest);
+}
 
 void evaluatePose(const Scene& scene, int animation, double seconds, Pose& pose, Workers* workers) {
   require(animation >= -1 && animation < static_cast<int>(scene.animations.size()), "no such animation");

@@ -37,6 +37,9 @@ struct LocalTransform {
   glm::dvec3 scale{1.0};
 };
 
+/// Too large to multiply with coordinates and still be squared, or not finite.
+bool isBeyondNumbers(const glm::dmat4& matrix);
+
 struct Pose {
   std::vector<Instance> instances;      ///< in node order; the same ones at every moment
   std::vector<glm::dmat4> nodeToWorld;  ///< of every node

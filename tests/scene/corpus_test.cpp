@@ -1,4 +1,4 @@
-// Real files, good and broken, that nobody here wrote: every one is loaded or refused with its name and a place, and what
+// Real files, good and broken, that nobody here wrote: every one is drawn or refused with its name and a place, and what
 // is loaded has nothing in it that drawing could trip over.
 #include <gtest/gtest.h>
 
@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/scene/camera.h"
+#include "apps/scene/frame.h"
 #include "apps/scene/load.h"
 #include "apps/scene/pose.h"
 
@@ -61,12 +63,40 @@ void expectSound(const Scene& scene) {
   }
 }
 
+/// A small frame in the middle of the first animation, or at rest: whole streams, and the scalar definition's pixels.
+void expectDrawn(const Scene& scene, silhouette::Method method) {
+  constexpr int kWidth = 96, kHeight = 64;
+  Pose pose;
+  if (scene.animations.empty())
+    evaluatePose(scene, -1, 0.0, pose);
+  else
+    evaluatePose(scene, 0, 0.5 * scene.animations[0].duration, pose);
+  const Sphere bounds = boundingSphere(scene, pose);
+  const CameraView camera =
+      makeCamera(frameSphere(bounds, kWidth, kHeight, 30, 20, 1, 30, 0), bounds, kWidth, kHeight);
+  FrameSettings settings;
+  settings.refinement.method = method;
+  FrameDrawer drawer(scene, 2), definition(scene, 1, {.tileWidth = 16, .tileHeight = 8, .scalar = true});
+  Image image, expected;
+  drawer.draw(pose, camera, settings, image);
+  definition.draw(pose, camera, settings, expected);
+  EXPECT_TRUE(image.rgba == expected.rgba);
+  for (std::size_t i = 0; i < pose.instances.size(); ++i)
+    if (pose.instances[i].visible) {
+      const RefinedInstance instance = drawer.instance(i);
+      EXPECT_TRUE(instance.stream->isConsistent(instance.shape)) << "instance " << i;
+    }
+}
+
 class Corpus : public testing::TestWithParam<fs::path> {};
 
-TEST_P(Corpus, IsLoadedOrRefused) {
+TEST_P(Corpus, IsDrawnOrRefused) {
   const std::string file = GetParam().string();
   try {
-    expectSound(load(file));
+    const Scene scene = load(file);
+    expectSound(scene);
+    for (const silhouette::Method method : {silhouette::Method::kFlat, silhouette::Method::kPatches})
+      expectDrawn(scene, method);
   } catch (const InputError& error) {
     const std::string message = error.what();
     EXPECT_TRUE(message.starts_with(file + ": /") || message.starts_with(file + ": byte ")) << message;

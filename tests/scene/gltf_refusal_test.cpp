@@ -63,6 +63,8 @@ TEST(GltfRefusal, AccessorsAndViewsBeyondTheirBytes) {
   expectRefusal("/accessors/0", [](GltfWriter& w) { w.root["bufferViews"][0]["byteStride"] = 16; });
   expectRefusal("/bufferViews/0/byteStride",
                 [](GltfWriter& w) { w.root["bufferViews"][0]["byteStride"] = 8; });
+  expectRefusal("/bufferViews/0/byteStride",
+                [](GltfWriter& w) { w.root["bufferViews"][0]["byteStride"] = 13; });
   expectRefusal("/bufferViews/0",
                 [](GltfWriter& w) { w.root["bufferViews"][0]["byteOffset"] = 9007199254740992; });
   expectRefusal("/buffers/0/byteLength", [](GltfWriter& w) { w.root["buffers"] = {{{"byteLength", 1000}}}; });
@@ -130,7 +132,7 @@ TEST(GltfRefusal, NodesThatAreNoTree) {
   });
   expectRefusal("/nodes/0/matrix",
                 [](GltfWriter& w) { w.root["nodes"][0]["matrix"] = std::vector<int>(16, 1); });
-  expectRefusal("/nodes/2", [](GltfWriter& w) {
+  expectRefusal("/nodes/1", [](GltfWriter& w) {
     for (int n = 0; n < 3; ++n) {
       w.root["nodes"][static_cast<std::size_t>(n)]["scale"] = {1e15, 1, 1};
       if (n > 0) w.root["nodes"][static_cast<std::size_t>(n) - 1]["children"] = {n};
