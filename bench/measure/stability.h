@@ -1,4 +1,4 @@
-// methods/5-measures.md, 5.5: kernels against twins in extended or exact arithmetic, over inputs that include the
+// Kernels against twins in extended or exact arithmetic, over inputs that include the
 // extremes; and the whole refinement at the extremes.
 #pragma once
 

@@ -1,4 +1,5 @@
 // limn_measure stability
+#include <algorithm>
 #include <cstdio>
 
 #include "bench/measure/command.h"
@@ -54,7 +55,9 @@ int runStability(const Options& options) {
                           .outside = ""}));
   }
   print(rows);
-  return 0;
+  const bool allHold =
+      std::all_of(rows.begin(), rows.end(), [](const Json& row) { return row["holds"].get<bool>(); });
+  return allHold ? 0 : 1;
 }
 
 }  // namespace limn::measure

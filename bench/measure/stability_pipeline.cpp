@@ -157,11 +157,14 @@ double faults(
   for (const Method method : kMethods) {
     for (const auto tangents : {silhouette::Tangents::kProjected, silhouette::Tangents::kCircular,
                                 silhouette::Tangents::kGeodesic}) {
-      for (const auto kind : {silhouette::Silhouetteness::kEdge, silhouette::Silhouetteness::kContour}) {
+      for (const auto& [kind, robust] : {std::pair{silhouette::Silhouetteness::kCrossing, true},
+                                         {silhouette::Silhouetteness::kCrossing, false},
+                                         {silhouette::Silhouetteness::kEdge, true},
+                                         {silhouette::Silhouetteness::kContour, false}}) {
         silhouette::Parameters parameters = parametersOf(method);
         parameters.tangents = tangents;
         parameters.silhouetteness = kind;
-        parameters.robust = kind == silhouette::Silhouetteness::kEdge;
+        parameters.robust = robust;
         change(parameters);
         refiner.refine(silhouette::makeView(camera.projection, camera.worldToView), parameters, stream);
         if (!stream.isConsistent(shape)) ++count;

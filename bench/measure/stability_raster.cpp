@@ -1,9 +1,12 @@
 // The rasterizer's kernels against exact integers and long double.
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <vector>
 
 #include "bench/measure/extremes.h"
 #include "bench/measure/stability.h"
+#include "raster/clip.h"
 #include "raster/triangle.h"
 #include "raster/view.h"
 
@@ -138,8 +141,116 @@ double planeError(std::uint64_t seed, std::size_t cases) {
   return largest.value();
 }
 
+/// A triangle alone in its batch, in view space.
+class LoneTriangle {
+ public:
+  explicit LoneTriangle(const std::array<glm::vec3, 3>& corners) {
+    set_.clusters = {{0, 0, 3, 1, 0}};
+    set_.points.resize(3);
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      set_.corners[k] = {k};
+      set_.points.set(k, corners[k], {0.0f, 0.0f, 1.0f});
+    }
+    batch_.set = &set_;
+    batch_.points = &set_.points;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 4; ++j) {
+        batch_.toView.m[i][j] = i == j ? 1.0f : 0.0f;
+        if (j < 3) batch_.normalRows[i][j] = i == j ? 1.0f : 0.0f;
+      }
+  }
+  void clip(const raster::ScreenMap& map, std::vector<raster::LooseTriangle>& parts) const {
+    parts.clear();
+    raster::clipTriangle(batch_, {0, 0, 0}, map, parts);
+  }
+
+ private:
+  raster::ClusterSet set_;
+  raster::Batch batch_;
+};
+
+/// Sutherland and Hodgman in long double, against the planes that the rasterizer names; `isClear` tells whether all
+/// corners are well inside or outside of every plane.
+std::vector<Vec3L> clipped(const std::array<glm::vec3, 3>& corners, const Projection& projection,
+                           bool& isClear) {
+  const long double x = (0.5L * projection.width + raster::kGuardPixels - 1) / projection.pixelsX;
+  const long double y = (0.5L * projection.height + raster::kGuardPixels - 1) / projection.pixelsY;
+  const long double nearPlane = projection.nearPlane, farPlane = projection.farPlane;
+  const auto distance = [&](int plane, const Vec3L& p) {
+    const std::array<long double, 6> all{-p.z - nearPlane, farPlane + p.z, p.x - p.z * x,
+                                         -p.z * x - p.x,   -p.z * y - p.y, p.y - p.z * y};
+    return all[static_cast<std::size_t>(plane)];
+  };
+  std::vector<Vec3L> polygon;
+  for (const glm::vec3& corner : corners) polygon.emplace_back(corner);
+  isClear = true;
+  for (int plane = 0; plane < 6; ++plane) {
+    std::vector<Vec3L> kept;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const Vec3L &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+      const long double da = distance(plane, a), db = distance(plane, b);
+      isClear = isClear && std::abs(da) > 1e-5L * (std::abs(a.x) + std::abs(a.y) + std::abs(a.z) + nearPlane);
+      if (da >= 0) kept.push_back(a);
+      if ((da >= 0) != (db >= 0)) kept.push_back(a + da / (da - db) * (b - a));
+    }
+    polygon = kept;
+  }
+  return polygon;
+}
+
+bool reachesWindow(const std::vector<Vec3L>& polygon, const Projection& projection) {
+  const auto within = [&](const auto& along, int size, float pixels) {
+    long double low = std::numeric_limits<long double>::infinity(), high = -low;
+    for (const Vec3L& p : polygon) {
+      const long double at = 0.5L * size + along(p) * pixels;
+      low = std::min(low, at), high = std::max(high, at);
+    }
+    return low < size - 1 && high > 1;
+  };
+  return within([](const Vec3L& p) { return -p.x / p.z; }, projection.width, projection.pixelsX) &&
+         within([](const Vec3L& p) { return p.y / p.z; }, projection.height, projection.pixelsY);
+}
+
+// How far corners of what is left of a triangle are from those of the exact polygon, in pixels; the number of parts
+// must be the same.
+double clipError(std::uint64_t seed, std::size_t cases) {
+  Extremes random(seed);
+  Largest largest;
+  std::vector<raster::LooseTriangle> parts;
+  for (std::size_t i = 0; i < cases;) {
+    const double size = random.magnitude(1e-6, 1e6);
+    const Projection projection = randomProjection(random, size);
+    std::array<glm::vec3, 3> corners;
+    for (glm::vec3& corner : corners) {
+      const double distance = random.magnitude(projection.nearPlane, 10.0 * projection.farPlane);
+      corner = random.oneIn(2) ? randomSeen(random, projection) : glm::vec3(distance * random.unit());
+    }
+    bool isClear = false;
+    const std::vector<Vec3L> truth = clipped(corners, projection, isClear);
+    if (!isClear || truth.size() < 3 || !reachesWindow(truth, projection)) continue;
+    ++i;
+    LoneTriangle(corners).clip(raster::ScreenMap(projection), parts);
+    if (parts.size() + 2 != truth.size()) {
+      largest.see(std::numeric_limits<long double>::infinity());
+      continue;
+    }
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      const std::array<std::size_t, 3> corner{0, part + 1, part + 2};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3L& p = truth[corner[k]];
+        const Corners& drawn = parts[part].corners;
+        largest.see(drawn.x[k] / 256.0L - (projection.width / 2.0L - p.x / p.z * projection.pixelsX));
+        largest.see(drawn.y[k] / 256.0L - (projection.height / 2.0L + p.y / p.z * projection.pixelsY));
+      }
+    }
+  }
+  return largest.value();
+}
+
 constexpr const char* kWindow =
     "windows of 1 to 16384 pixels, sizes 1e-6 to 1e6, near : far = 1 : 1e7, points in sight";
+constexpr const char* kCrossing =
+    "windows of 1 to 16384 pixels, sizes 1e-6 to 1e6, near : far = 1 : 1e7, triangles that cross any planes";
 constexpr const char* kGuard = "corners within 8191 pixels of the window";
 
 constexpr std::array kChecks{
@@ -147,6 +258,9 @@ constexpr std::array kChecks{
                 "beyond the guard band triangles are clipped first", snapError},
     KernelCheck{"view depth", "ulp of a float", 2.0, kWindow,
                 "before the near plane triangles are clipped first", depthError},
+    KernelCheck{"clipping", "pixels, half a grid step of 1/512 included", 0.01, kCrossing,
+                "parts before the near plane, beyond the far one or outside the guard band are not drawn",
+                clipError},
     KernelCheck{"edge function", "square sub-pixels", 0.0, kGuard, "clipped first", edgeError},
     KernelCheck{
         "interpolation over a triangle", "largest corner value", 1e-4,

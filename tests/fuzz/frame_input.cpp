@@ -52,13 +52,16 @@ silhouette::Parameters readMethod(ByteReader& in, int first, int second) {
   const auto bit = [first](int n) { return (first >> n & 1) != 0; };
   silhouette::Parameters p;
   p.method = static_cast<silhouette::Method>(first & 3);
-  p.silhouetteness = bit(2) ? silhouette::Silhouetteness::kEdge : silhouette::Silhouetteness::kContour;
   p.robust = bit(3);
   p.features = bit(4);
   p.boundaries = bit(5);
   p.shadingNormals = bit(6) ? silhouette::ShadingNormals::kQuadratic : silhouette::ShadingNormals::kLinear;
   p.tangents = static_cast<silhouette::Tangents>((second & 3) % 3);
-  p.segments = in.byte() % (silhouette::kMaxSegments + 1);
+  const int count = in.byte(), values = silhouette::kMaxSegments + 1;
+  p.segments = count % values;
+  p.silhouetteness = count / values % 2 == 1 ? silhouette::Silhouetteness::kCrossing
+                     : bit(2)                ? silhouette::Silhouetteness::kEdge
+                                             : silhouette::Silhouetteness::kContour;
   p.tolerance = static_cast<float>(in.byte()) / 32.0f;
   p.beta = static_cast<float>(in.byte()) / 32.0f;
   return p;
