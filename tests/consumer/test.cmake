@@ -1,5 +1,5 @@
-# cmake -DBUILD=... -DSOURCE=... -DCOMPILER=... -P test.cmake: installs, builds the consumer against it, runs it; and
-# builds one program with pkg-config alone.
+# cmake -DBUILD=... -DSOURCE=... -DCOMPILER=... -P test.cmake: installs, builds the consumer against it, runs it;
+# builds it with limn as a part, and one program with pkg-config alone.
 set(work ${BUILD}/consumer)
 file(REMOVE_RECURSE ${work})
 function(run)
@@ -16,6 +16,9 @@ foreach(component silhouette raster scene)
   run(${work}/build/use_${component})
 endforeach()
 run(${work}/prefix/bin/limn --version)
+# As a part of another project: its headers are found. (Building all of limn once more would take a minute.)
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${work}/part -G Ninja -DLIMN_SOURCE=${SOURCE}/../.. -DCMAKE_CXX_COMPILER=${COMPILER})
+run(${CMAKE_COMMAND} --build ${work}/part --target CMakeFiles/use_silhouette.dir/use_silhouette.cpp.o)
 file(GLOB_RECURSE config ${work}/prefix/limn.pc)
 get_filename_component(folder ${config} DIRECTORY)
 run(sh -c "PKG_CONFIG_PATH=${folder} && export PKG_CONFIG_PATH && \
