@@ -12,11 +12,12 @@ CHECK_PACKAGES := clang clang-format clang-tidy libclang-rt-14-dev assimp-testmo
 # without a screen) is what people draw glTF files with, chromium opens the report to see that it works.
 BENCH_PACKAGES := gnuplot-nox fonts-dejavu-core python3 libgl-dev libosmesa6 f3d xvfb xauth chromium
 
-.PHONY: help build demo pictures check check-all bench fuzz format packages check-packages bench-packages
+.PHONY: help build demo pictures api check check-all bench fuzz format packages check-packages bench-packages
 
 help:
 	@echo "make demo       install what is missing, build, draw the demonstration frames into out/"
 	@echo "make build      the program (build/release/apps/limn) and the bench programs (build/release/bench)"
+	@echo "make api        the library's headers as pages, in build/api/html"
 	@echo "make check      formatting, clang-tidy, the tests with g++ and clang++, the sanitizers"
 	@echo "make check-all  the full matrix: compilers, optimisation levels, long fuzzing"
 	@echo "make bench      the benchmarks"
@@ -57,6 +58,12 @@ demo: build
 pictures: build
 	@build/release/bench/limn_pictures docs/pictures
 	@cd docs && PATH="$(CURDIR)/build/release/apps:$$PATH" ./run_commands.sh options.md
+
+# The public headers as pages.
+api:
+	$(call install,doxygen)
+	@doxygen docs/Doxyfile
+	@echo "limn: the library's headers as pages, build/api/html/index.html"
 
 SOURCES = $(shell git ls-files '*.cpp' '*.h')
 

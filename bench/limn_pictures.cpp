@@ -34,7 +34,6 @@ struct Picture {
 constexpr Picture kPictures[] = {
     {"demo.png", "builtin:demo", 30, 20, 1.0, 0.40, 0.10},
     {"knot.png", "builtin:knot-480", 20, 10, 1.0, 0.10, 0.05},
-    {"pawn.png", "builtin:pawn", 15, 12, 1.0, 0.32, 0.04},
 };
 
 void fill(scene::Image& image, int x0, int y0, int x1, int y1, Color color) {

@@ -10,7 +10,7 @@ set logscale x
 set xtics add (1, 1.1, 1.2, 1.5, 2, 3, 5, 10)
 set grid lc rgb '#dddddd'
 set key top right
-set title group . ' models: numbers are tolerances in pixels, for pn segments per edge'
+set title 'shapes: ' . group . '; numbers are tolerances in pixels, for pn segments per edge'
 colours = "#444444 #b5341c #1a59b6 #2c8a3d"
 names = "flat patches curves pn"
 do for [kind in 'svg png'] {

@@ -89,6 +89,11 @@ TEST_F(Manual, CommandsOfThePagesWork) {
     count += commands.size();
   }
   EXPECT_GT(count, 70U);
+  // Those of options.md are the pictures that it shows.
+  for (const fs::directory_entry& shown : fs::directory_iterator(kDocuments / "pictures/options")) {
+    const std::string drawn = "pictures/options" / shown.path().filename();
+    EXPECT_EQ(limn({"compare", drawn, shown.path()}).status, 0) << drawn << " is old; run make pictures";
+  }
 }
 
 TEST_F(Manual, ExamplesOfTheManPageAndOfHelpWork) {
