@@ -248,8 +248,9 @@ TEST(Kernels, AgreeOnPointsThatRoundingPutsBeyondTheFarPlane) {
                        .ambient = 0.0F};
     Renderer renderer(1);
     const Picture picture = scene.draw(renderer);
-    if (samples == 1)  // with several, none of them lies there, but colours are those of the centres
+    if (samples == 1) {  // with several, none of them lies there, but colours are those of the centres
       EXPECT_GT(std::count(picture.depth.begin(), picture.depth.end(), 1.0F / (1.0F / kFar)), 20);
+    }
     expectSameOnEveryTarget(scene, "beyond the far plane");
   }
 }
