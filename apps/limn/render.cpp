@@ -43,8 +43,17 @@ class Selection {
   std::pair<int, int> shard_;
 };
 
+/// Results that would replace each other. (Names that a pattern makes are not looked at.)
+void requireOwnFiles(const RenderOptions& o) {
+  if (o.statistics && (o.statistics == o.output || o.statistics == o.manifest))
+    throw UsageError("--stats names the file of another result; give it one of its own");
+  if (o.manifest && o.manifest == o.output)
+    throw UsageError("--manifest names the file of the frame; give it one of its own");
+}
+
 /// Combinations of options that make no sense, before anything is loaded.
 void checkOutput(const RenderOptions& o) {
+  requireOwnFiles(o);
   if (!o.output) {
     if (!o.hash && !o.dryRun && !o.statistics)
       throw UsageError("no output; name one with -o, like -o picture.png");

@@ -53,6 +53,8 @@ TEST_F(Faults, OfUsage) {
   expect({"render"}, 2, "name one with -o");
   expect({"render", "-o", frame, "--tolerence", "1"}, 2, "did you mean --tolerance?");
   expect({"render", "-o", frame, "--method", "patchs"}, 2, "did you mean patches?");
+  expect({"render", "-o", frame, "--stats", frame}, 2, "file of another result");
+  expect({"render", "-o", frame, "--manifest", frame}, 2, "file of the frame");
   expect({"render", "-o", frame, "--size", "0x10"}, 2, "1 to 16384");
   expect({"render", "-o", frame, "--size", "99999x99999"}, 2, "1 to 16384");
   expect({"render", "-o", frame, "--size", "tall"}, 2, "WIDTHxHEIGHT");
