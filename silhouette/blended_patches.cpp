@@ -82,20 +82,8 @@ class BlendedPatches final : public MethodState {
     PatchesPass::Scratch& scratch = scratch_[crew.slot()];
     const Parameters wanted = whereFitted(parameters);
     if (scratch.recordOf.empty()) scratch.recordOf.assign(topology_.edges().size(), 0);
-    PatchesPass pass{mesh_,
-                     topology_,
-                     test_,
-                     clusters_,
-                     curves_,
-                     centers_,
-                     view,
-                     wanted,
-                     crew,
-                     scratch,
-                     stream,
-                     report,
-                     PixelBound(view),
-                     StreamWriter(mesh_, parameters.shadingNormals, stream)};
+    PatchesPass pass{
+        {mesh_, topology_, view, wanted, crew, stream, report}, test_, clusters_, curves_, centers_, scratch};
     pass.run();
   }
 

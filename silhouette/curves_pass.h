@@ -17,13 +17,12 @@
 #include "silhouette/crossed_edges.h"
 #include "silhouette/curve_set.h"
 #include "silhouette/edge_search.h"
-#include "silhouette/method.h"
-#include "silhouette/writer.h"
+#include "silhouette/view_pass.h"
 
 namespace limn::silhouette {
 
 /// All that it refers to outlives it.
-struct CurvesPass {
+struct CurvesPass : ViewPass {
   static constexpr std::array<float, 3> kLinear{};  ///< normals: what is curved here is the outline
 
   /// The curve across a silhouette triangle, from the side that leaves the lone corner to the one that comes back.
@@ -75,17 +74,8 @@ struct CurvesPass {
     }
   };
 
-  const Mesh& mesh;
-  const Topology& topology;
   const CurveSet& prepared;
-  const View& view;
-  const Parameters& parameters;
-  const Crew& crew;
   Scratch& scratch;
-  RefinedStream& stream;
-  RefineReport& report;
-  PixelBound bound;
-  StreamWriter writer;
 
   void run();
 

@@ -13,17 +13,15 @@
 #include "silhouette/bare_test.h"
 #include "silhouette/chord_kernel.h"
 #include "silhouette/edge_clusters.h"
-#include "silhouette/method.h"
 #include "silhouette/patch.h"
 #include "silhouette/pattern.h"
-#include "silhouette/pixel_bound.h"
 #include "silhouette/smooth_edge.h"
-#include "silhouette/writer.h"
+#include "silhouette/view_pass.h"
 
 namespace limn::silhouette {
 
 /// All that it refers to outlives it.
-struct PatchesPass {
+struct PatchesPass : ViewPass {
   static constexpr std::size_t kWordsPerBlock = 64;  ///< of 64 triangles each
 
   /// What a block of triangles adds to the stream.
@@ -53,20 +51,11 @@ struct PatchesPass {
     std::vector<Share> shares;               // per block of triangles, then prefix sums
   };
 
-  const Mesh& mesh;
-  const Topology& topology;
   const EdgeTest& test;
   const EdgeClusters& clusters;
   const std::vector<CurveOffsets>& curves;
   const std::vector<glm::vec3>& centers;  // of fitted patches; empty without
-  const View& view;
-  const Parameters& parameters;
-  const Crew& crew;
   Scratch& scratch;
-  RefinedStream& stream;
-  RefineReport& report;
-  PixelBound bound;
-  StreamWriter writer;
 
   void run();
 

@@ -69,17 +69,7 @@ class SilhouetteCurves final : public MethodState {
       scratch.segmentOf.assign(mesh_.triangleCount(), kNone);
       scratch.loweredOf.assign(mesh_.positions.size(), kNone);
     }
-    CurvesPass pass{mesh_,
-                    topology_,
-                    prepared_,
-                    view,
-                    parameters,
-                    crew,
-                    scratch,
-                    stream,
-                    report,
-                    PixelBound(view),
-                    StreamWriter(mesh_, parameters.shadingNormals, stream)};
+    CurvesPass pass{{mesh_, topology_, view, parameters, crew, stream, report}, prepared_, scratch};
     pass.run();
   }
 

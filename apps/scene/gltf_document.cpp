@@ -114,20 +114,25 @@ GltfImage readImage(const GltfDocument& document, std::size_t index, const json&
   return image;
 }
 
+// Calls refuseBadOne(index, item) for every item of a list of the document, which may be missing.
+template <class Check>
+void forAll(const json& document, const char* list, const Check& refuseBadOne) {
+  const auto found = document.find(list);
+  if (found == document.end()) return;
+  std::size_t index = 0;
+  for (const json& item : *found) refuseBadOne(index++, item);
+}
+
 // With the place, which tinygltf does not tell.
 void refuseWhatTinygltfDoes(const GltfDocument& file, const json& document) {
-  std::size_t index = 0;
-  for (const json& view : document.value("bufferViews", json::array())) {
+  forAll(document, "bufferViews", [&](std::size_t index, const json& view) {
     if (view.value("byteStride", 4) % 4 != 0)
       file.refuse(jsonPointer("bufferViews", index, "byteStride"), "must be a multiple of 4");
-    ++index;
-  }
-  index = 0;
-  for (const json& camera : document.value("cameras", json::array())) {
+  });
+  forAll(document, "cameras", [&](std::size_t index, const json& camera) {
     const std::string kind = textOf(camera, "type");
     if (!camera.contains(kind)) file.refuse(jsonPointer("cameras", index, kind), "is missing");
-    ++index;
-  }
+  });
 }
 
 // Takes out what tinygltf is not to see, and puts what it refuses although glTF allows it into a form that it

@@ -36,6 +36,17 @@ glm::vec3 randomSeen(Extremes& random, const Projection& projection) {
           static_cast<float>(-depth)};
 }
 
+// Where a point of view space is seen, in pixels from the window's upper left corner.
+std::array<long double, 2> seenAt(const Vec3L& p, const Projection& projection) {
+  return {projection.width / 2.0L - p.x / p.z * projection.pixelsX,
+          projection.height / 2.0L + p.y / p.z * projection.pixelsY};
+}
+
+void seeDistance(Largest& largest, std::int32_t x, std::int32_t y, const std::array<long double, 2>& truth) {
+  largest.see(x / static_cast<long double>(kSubpixels) - truth[0]);
+  largest.see(y / static_cast<long double>(kSubpixels) - truth[1]);
+}
+
 // The largest error that `compare(map, projection, point, largest)` sees at points in sight.
 template <class Compare>
 double largestOfSeen(std::uint64_t seed, std::size_t cases, const Compare& compare) {
@@ -50,15 +61,12 @@ double largestOfSeen(std::uint64_t seed, std::size_t cases, const Compare& compa
 }
 
 double snapError(std::uint64_t seed, std::size_t cases) {
-  return largestOfSeen(
-      seed, cases,
-      [](const raster::ScreenMap& map, const Projection& projection, const glm::vec3& point,
-         Largest& largest) {
-        const raster::ScreenVertex v = map.project(point);
-        const Vec3L p(point);
-        largest.see(v.x / 256.0L - (projection.width / 2.0L - p.x / p.z * projection.pixelsX));
-        largest.see(v.y / 256.0L - (projection.height / 2.0L + p.y / p.z * projection.pixelsY));
-      });
+  return largestOfSeen(seed, cases,
+                       [](const raster::ScreenMap& map, const Projection& projection, const glm::vec3& point,
+                          Largest& largest) {
+                         const raster::ScreenVertex v = map.project(point);
+                         seeDistance(largest, v.x, v.y, seenAt(Vec3L(point), projection));
+                       });
 }
 
 double depthError(std::uint64_t seed, std::size_t cases) {
@@ -153,11 +161,8 @@ class LoneTriangle {
     }
     batch_.set = &set_;
     batch_.points = &set_.points;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 4; ++j) {
-        batch_.toView.m[i][j] = i == j ? 1.0f : 0.0f;
-        if (j < 3) batch_.normalRows[i][j] = i == j ? 1.0f : 0.0f;
-      }
+    batch_.toView = raster::Affine(glm::mat4(1.0f));
+    for (int i = 0; i < 3; ++i) batch_.normalRows[i][i] = 1.0f;
   }
   void clip(const raster::ScreenMap& map, std::vector<raster::LooseTriangle>& parts) const {
     parts.clear();
@@ -166,7 +171,7 @@ class LoneTriangle {
 
  private:
   raster::ClusterSet set_;
-  raster::Batch batch_;
+  raster::Batch batch_{};
 };
 
 /// Sutherland and Hodgman in long double, against the planes that the rasterizer names; `isClear` tells whether all
@@ -199,16 +204,16 @@ std::vector<Vec3L> clipped(const std::array<glm::vec3, 3>& corners, const Projec
 }
 
 bool reachesWindow(const std::vector<Vec3L>& polygon, const Projection& projection) {
-  const auto within = [&](const auto& along, int size, float pixels) {
+  const std::array<int, 2> size{projection.width, projection.height};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
     long double low = std::numeric_limits<long double>::infinity(), high = -low;
     for (const Vec3L& p : polygon) {
-      const long double at = 0.5L * size + along(p) * pixels;
+      const long double at = seenAt(p, projection)[axis];
       low = std::min(low, at), high = std::max(high, at);
     }
-    return low < size - 1 && high > 1;
-  };
-  return within([](const Vec3L& p) { return -p.x / p.z; }, projection.width, projection.pixelsX) &&
-         within([](const Vec3L& p) { return p.y / p.z; }, projection.height, projection.pixelsY);
+    if (!(low < size[axis] - 1 && high > 1)) return false;
+  }
+  return true;
 }
 
 // How far corners of what is left of a triangle are from those of the exact polygon, in pixels; the number of parts
@@ -237,10 +242,8 @@ double clipError(std::uint64_t seed, std::size_t cases) {
     for (std::size_t part = 0; part < parts.size(); ++part) {
       const std::array<std::size_t, 3> corner{0, part + 1, part + 2};
       for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3L& p = truth[corner[k]];
         const Corners& drawn = parts[part].corners;
-        largest.see(drawn.x[k] / 256.0L - (projection.width / 2.0L - p.x / p.z * projection.pixelsX));
-        largest.see(drawn.y[k] / 256.0L - (projection.height / 2.0L + p.y / p.z * projection.pixelsY));
+        seeDistance(largest, drawn.x[k], drawn.y[k], seenAt(truth[corner[k]], projection));
       }
     }
   }
