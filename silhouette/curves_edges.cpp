@@ -5,9 +5,12 @@
 // edge_search.h and crossed_edges.h say.
 #include <atomic>
 #include <bit>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <numeric>
 
 #include "silhouette/curves_pass.h"
+#include "silhouette/step_counter.h"
 
 namespace limn::silhouette {
 namespace {
@@ -45,16 +48,28 @@ void CurvesPass::findEdges() {
   const auto wanted = [&](std::size_t e) -> std::uint32_t { return scratch.search.isListed(e) ? 1 : 0; };
   collect(prepared.links.size(), scratch.edges, wanted, [&](std::size_t e, std::uint32_t at) {
     scratch.edges[at] = crossedEdge(static_cast<std::uint32_t>(e));
-    const CrossedEdge& record = scratch.edges[at];
-    if (record.segments == 1 && !record.crosses[0] && !record.crosses[1]) return;
-    scratch.recordOf[e] = at;
-    for (const Side& face : topology.edges()[e].faces)
-      if (face.triangle != kNone) markTriangle(stream.replaced, face.triangle);
   });
   report.smoothEdges = scratch.edges.size();
+  crew.forBlocks(scratch.edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    StepCounter steps(bound, parameters);
+    for (std::size_t k = begin; k < end; ++k) {
+      CrossedEdge& record = scratch.edges[k];
+      if (record.alpha == 0.0f) continue;
+      const EdgeCurve curve = curveOf(record);
+      steps.add(curve.ends[0], curve.ends[1], curve.offsets, record.segments);
+    }
+    reportCapped(steps.finish());
+    for (std::size_t k = begin; k < end; ++k) {
+      const CrossedEdge& record = scratch.edges[k];
+      if (record.segments == 1 && !record.crosses[0] && !record.crosses[1]) continue;
+      scratch.recordOf[record.edge] = static_cast<std::uint32_t>(k);
+      for (const Side& face : topology.edges()[record.edge].faces)
+        if (face.triangle != kNone) markTriangle(stream.replaced, face.triangle);
+    }
+  });
 }
 
-CrossedEdge CurvesPass::crossedEdge(std::uint32_t e) {
+CrossedEdge CurvesPass::crossedEdge(std::uint32_t e) const {
   const EdgeVertices& v = prepared.vertices[e];
   CrossedEdge record;
   record.edge = e;
@@ -62,22 +77,27 @@ CrossedEdge CurvesPass::crossedEdge(std::uint32_t e) {
   record.seam = prepared.links[e].seam;
   for (std::size_t face = 0; face < 2; ++face) {
     record.crosses[face] = scratch.search.visible[v[face][0]] != scratch.search.visible[v[face][1]];
-    if (record.crosses[face]) record.parameter[face] = scratch.search.crossings[e][face];
+    if (!record.crosses[face]) continue;
+    record.parameter[face] = scratch.search.crossings[e][face];
+    record.points[face] = face == 0 || record.seam ? silhouettePoint(record, face) : record.points[0];
   }
-  if (record.alpha == 0.0f) return record;
-  const EdgeCurve curve = curveOf(record);
-  record.segments = steps(curve.ends[0], curve.ends[1], curve.offsets);
   return record;
 }
 
-// Steps of a polyline with its inner vertices outside the curve (contour.h) that stays within the tolerance.
-std::uint32_t CurvesPass::steps(const vec3& p, const vec3& q, const CurveOffsets& offsets) {
-  if (parameters.segments > 0) return static_cast<std::uint32_t>(parameters.segments);
-  bool capped = false;
-  const auto count = static_cast<std::uint32_t>(
-      polylineSteps(bound.curveError(p, q, offsets).bend, parameters.tolerance, capped));
-  if (capped) std::atomic_ref<std::size_t>(report.cappedEdges).fetch_add(1, std::memory_order_relaxed);
-  return count;
+// The unit normal is the linear one of the face, or its triangle's where the ends' normals cancel.
+SegmentEnd CurvesPass::silhouettePoint(const CrossedEdge& record, std::size_t face) const {
+  const float t = record.parameter[face];
+  const std::array<std::uint32_t, 2>& v = prepared.vertices[record.edge][face];
+  const vec3 normal = (1.0f - t) * mesh.normals[v[0]] + t * mesh.normals[v[1]];
+  const float size2 = glm::dot(normal, normal);
+  const vec3 unit = size2 > 1e-12f ? normal / std::sqrt(size2)
+                                   : prepared.faceNormals[topology.edges()[record.edge].faces[face].triangle];
+  const std::array<float, 2>& trust = prepared.trust[record.edge];
+  return {bridgeOf(record).point(t), unit, (1.0f - t) * trust[0] + t * trust[1]};
+}
+
+void CurvesPass::reportCapped(std::size_t count) {
+  if (count > 0) std::atomic_ref<std::size_t>(report.cappedEdges).fetch_add(count, std::memory_order_relaxed);
 }
 
 void CurvesPass::listReplaced(std::vector<std::uint32_t>& triangles) {

@@ -86,16 +86,16 @@ struct CurvesPass : ViewPass {
   template <class T, class Count, class Fill>
   void collect(std::size_t items, std::vector<T>& out, const Count& count, const Fill& fill);
   void findEdges();
-  CrossedEdge crossedEdge(std::uint32_t e);
-  std::uint32_t steps(const glm::vec3& p, const glm::vec3& q, const CurveOffsets& offsets);
+  CrossedEdge crossedEdge(std::uint32_t e) const;
+  SegmentEnd silhouettePoint(const CrossedEdge& record, std::size_t face) const;
+  void reportCapped(std::size_t count);
   void listReplaced(std::vector<std::uint32_t>& triangles);
   void placeEdges();
   void emitEdge(const CrossedEdge& edge);
 
   // curves_segments.cpp
   void findSegments();
-  Segment segmentOf(std::uint32_t triangle);
-  SegmentEnd segmentEnd(const SideView& side) const;
+  Segment segmentOf(std::uint32_t triangle) const;
   void lowerPoints();
   void addPlanes(std::uint32_t triangle, const Segment& segment);
   void lower(std::uint32_t point, const glm::vec3& displacement);

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "silhouette/curves_pass.h"
+#include "silhouette/step_counter.h"
 
 namespace limn::silhouette {
 namespace {
@@ -23,14 +24,19 @@ void CurvesPass::findSegments() {
   const std::vector<std::uint32_t>& triangles = scratch.segmentTriangles;
   scratch.segments.resize(triangles.size());
   crew.forBlocks(triangles.size(), kTrianglesPerBlock, [&](std::size_t begin, std::size_t end) {
+    StepCounter steps(bound, parameters);
     for (std::size_t k = begin; k < end; ++k) {
-      scratch.segments[k] = segmentOf(triangles[k]);
+      Segment& segment = scratch.segments[k];
+      segment = segmentOf(triangles[k]);
       scratch.segmentOf[triangles[k]] = static_cast<std::uint32_t>(k);
+      if (segment.exists)
+        steps.add(segment.ends[0].place, segment.ends[1].place, segment.offsets, segment.steps);
     }
+    reportCapped(steps.finish());
   });
 }
 
-CurvesPass::Segment CurvesPass::segmentOf(std::uint32_t triangle) {
+CurvesPass::Segment CurvesPass::segmentOf(std::uint32_t triangle) const {
   const std::uint32_t* corner = &mesh.indices[3 * std::size_t{triangle}];
   const std::array<std::uint8_t, 3> seen{scratch.search.visible[corner[0]], scratch.search.visible[corner[1]],
                                          scratch.search.visible[corner[2]]};
@@ -41,25 +47,12 @@ CurvesPass::Segment CurvesPass::segmentOf(std::uint32_t triangle) {
   for (std::size_t end = 0; end < 2; ++end) {
     const SideView side = sideOf(triangle, sides[end]);
     if (side.edge == nullptr || !side.edge->crosses[side.face]) return segment;
-    segment.ends[end] = segmentEnd(side);
+    segment.ends[end] = side.edge->points[side.face];
     segment.weights[end] = sideWeights(sides[end], side.parameter());
   }
   segment.exists = true;
   segment.offsets = segmentCurve(segment.ends[0], segment.ends[1], parameters.robust);
-  segment.steps = steps(segment.ends[0].place, segment.ends[1].place, segment.offsets);
   return segment;
-}
-
-SegmentEnd CurvesPass::segmentEnd(const SideView& side) const {
-  const std::uint32_t e = side.edge->edge;
-  const float t = side.edge->parameter[side.face];
-  const std::array<std::uint32_t, 2>& v = prepared.vertices[e][side.face];
-  const vec3 normal = (1.0f - t) * mesh.normals[v[0]] + t * mesh.normals[v[1]];
-  const float size2 = glm::dot(normal, normal);
-  const vec3 unit = size2 > 1e-12f ? normal / std::sqrt(size2)
-                                   : prepared.faceNormals[topology.edges()[e].faces[side.face].triangle];
-  const std::array<float, 2>& trust = prepared.trust[e];
-  return {bridgeOf(*side.edge).point(t), unit, (1.0f - t) * trust[0] + t * trust[1]};
 }
 
 void CurvesPass::lowerPoints() {

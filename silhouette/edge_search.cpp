@@ -1,5 +1,6 @@
 #include "silhouette/edge_search.h"
 
+#include "silhouette/chord_kernel.h"
 #include "silhouette/contour.h"
 #include "silhouette/facing_kernel.h"
 #include "silhouette/pixel_bound.h"
@@ -26,26 +27,44 @@ void EdgeSearch::run(const Mesh& mesh, const Topology& topology, const CurveSet&
   const RingTest ring{mesh, topology, curves, view, visible, heights, crossings};
   const float largest = ring.largestProduct();
   const PixelBound bound(view);
-  // On a fine mesh that is nearly every edge by the contour, and telling costs less than looking around it.
-  const auto isSeen = [&](std::size_t e) {
-    const std::array<std::uint32_t, 2>& ends = curves.links[e].ends;
-    return parameters.segments > 0 ||
-           bound.curveError(mesh.positions[ends[0]], mesh.positions[ends[1]], curves.curves[e]).bend >
-               kUnseen * parameters.tolerance;
-  };
   crew.forBlocks(edges, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) states[e] = stateOf(e, mesh, curves, view, largest);
   });
   crew.forBlocks(edges, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) {
-      if (states[e] == 0) continue;
-      const EdgeLink& link = curves.links[e];
-      const bool mayBend = (states[e] & kMayBend) != 0, crossed = (states[e] & kCrossed) != 0;
-      const bool looks = mayBend && !link.always && isSeen(e);
-      alphas[e] = link.always ? 1.0f : looks ? ring.alpha(static_cast<std::uint32_t>(e)) : 0.0f;
-      if (alphas[e] > 0.0f || (crossed && link.bridged)) states[e] |= kListed;
-    }
+    findAlphas(begin, end, ring, bound, parameters);
+    for (std::size_t e = begin; e < end; ++e)
+      if (states[e] != 0 && (alphas[e] > 0.0f || ((states[e] & kCrossed) != 0 && curves.links[e].bridged)))
+        states[e] |= kListed;
   });
+}
+
+// Of the edges begin … end - 1 that matter. Curves that nobody sees are told by batches before anything around them is
+// looked at: on a fine mesh that is nearly every edge by the contour.
+void EdgeSearch::findAlphas(std::size_t begin, std::size_t end, const RingTest& ring, const PixelBound& bound,
+                            const Parameters& parameters) {
+  CurveBatch batch{};
+  std::array<std::uint32_t, CurveBatch::kCapacity> edges;
+  const auto lookAround = [&] {
+    CurveErrors errors;
+    if (parameters.segments == 0) curveErrors(bound, batch, errors);
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      const bool isSeen = parameters.segments > 0 || errors.bends[i] > kUnseen * parameters.tolerance;
+      alphas[edges[i]] = isSeen ? ring.alpha(edges[i], alphas[edges[i]]) : 0.0f;
+    }
+    batch.count = 0;
+  };
+  for (std::size_t e = begin; e < end; ++e) {
+    if (states[e] == 0) continue;
+    const EdgeLink& link = ring.curves.links[e];
+    alphas[e] = link.always ? 1.0f : 0.0f;
+    if (link.always || (states[e] & kMayBend) == 0) continue;
+    alphas[e] = ring.silhouetteness(static_cast<std::uint32_t>(e));
+    if (alphas[e] == 0.0f) continue;
+    edges[batch.count] = static_cast<std::uint32_t>(e);
+    batch.add(ring.mesh.positions[link.ends[0]], ring.mesh.positions[link.ends[1]], ring.curves.curves[e]);
+    if (batch.count == CurveBatch::kCapacity) lookAround();
+  }
+  lookAround();
 }
 
 void EdgeSearch::findVisible(const CurveSet& curves, const View& view, const Crew& crew) {

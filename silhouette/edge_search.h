@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "silhouette/curve_set.h"
+#include "silhouette/pixel_bound.h"
 #include "silhouette/ring.h"
 
 namespace limn::silhouette {
@@ -34,6 +35,8 @@ struct EdgeSearch {
   enum State : std::uint8_t { kCrossed = 1, kMayBend = 2, kListed = 4 };
 
   void findVisible(const CurveSet& curves, const View& view, const Crew& crew);
+  void findAlphas(std::size_t begin, std::size_t end, const RingTest& ring, const PixelBound& bound,
+                  const Parameters& parameters);
   std::uint8_t stateOf(std::size_t e, const Mesh& mesh, const CurveSet& curves, const View& view,
                        float largest);
 };

@@ -78,21 +78,25 @@ float RingTest::besideCorners(const Middle& edge, const Side& face) const {
   return least;
 }
 
-float RingTest::alpha(std::uint32_t e) const {
+float RingTest::silhouetteness(std::uint32_t e) const {
+  const EdgeLink& link = curves.links[e];
+  const vec3 w = towardsEye(view, 0.5f * (mesh.positions[link.ends[0]] + mesh.positions[link.ends[1]]));
+  const float length2 = dot(w, w);
+  const float product = dot(w, curves.faceNormals[link.faces[0]]) * dot(w, curves.faceNormals[link.faces[1]]);
+  return product < kBeta * length2 ? silhouettenessOf(product / length2, kBeta) : 0.0f;
+}
+
+float RingTest::alpha(std::uint32_t e, float silhouetteness) const {
   const EdgeLink& link = curves.links[e];
   const vec3 &p = mesh.positions[link.ends[0]], &q = mesh.positions[link.ends[1]];
   const Middle middle{0.5f * (p + q), curveOffset(curves.curves[e], 0.5f), 1.0f / glm::length(q - p)};
-  const vec3 w = towardsEye(view, middle.chord);
-  const float length2 = dot(w, w);
-  const float product = dot(w, curves.faceNormals[link.faces[0]]) * dot(w, curves.faceNormals[link.faces[1]]);
-  if (!(product < kBeta * length2)) return 0.0f;
   // The segments first: beside them nearly every edge of a smooth shape is hidden.
   const std::array<Side, 2>& faces = topology.edges()[e].faces;
   const float first = besideSegment(middle, faces[0]);
   if (!(first > 0.0f)) return 0.0f;
   const float second = besideSegment(middle, faces[1]);
   if (!(second > 0.0f)) return 0.0f;
-  return silhouettenessOf(product / length2, kBeta) * std::min(first, besideCorners(middle, faces[0])) *
+  return silhouetteness * std::min(first, besideCorners(middle, faces[0])) *
          std::min(second, besideCorners(middle, faces[1]));
 }
 

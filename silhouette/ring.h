@@ -31,8 +31,10 @@ struct RingTest {
   /// an α.
   float largestProduct() const;
 
-  /// α of a smooth edge with a curve.
-  float alpha(std::uint32_t e) const;
+  /// (2) of a smooth edge with a curve.
+  float silhouetteness(std::uint32_t e) const;
+  /// Its α, given that, where it is not 0.
+  float alpha(std::uint32_t e, float silhouetteness) const;
 
  private:
   /// The middle of an edge's chord, what its curve adds there, and 1 / the edge's length.
