@@ -1,6 +1,7 @@
 #include "silhouette/crossed_edges.h"
 
 #include <cmath>
+#include <glm/geometric.hpp>
 
 namespace limn::silhouette {
 namespace {
@@ -18,17 +19,20 @@ std::uint32_t nearestSample(float t, std::uint32_t segments) {
 float settled(float t, bool& own, const CrossedEdge& edge, const EdgeCurve& curve, const EdgeCurve& bridge,
               const std::array<bool, 2>& open, const PixelBound& bound, float snap) {
   own = true;
-  const glm::vec3 place = bridge.point(t);
+  const glm::vec2 seen = bound.place(bridge.point(t));
+  const auto isThere = [&](const glm::vec3& vertex) {
+    return glm::length(seen - bound.place(vertex)) <= snap;
+  };
   for (std::size_t end = 0; end < 2; ++end) {
     if (!open[end]) continue;
     const auto there = static_cast<float>(end);
-    own = own && t != there && !(bound.distance(place, curve.ends[end]) <= snap);
+    own = own && t != there && !isThere(curve.ends[end]);
     if (!own) return there;
   }
   const std::uint32_t sample = nearestSample(t, edge.segments);
   if (sample == 0 || sample == edge.segments) return t;
   const float there = sampleParameter(sample, edge.segments);
-  own = t != there && !(bound.distance(place, curve.sample(sample, edge.segments)) <= snap);
+  own = t != there && !isThere(curve.sample(sample, edge.segments));
   return own ? t : there;
 }
 

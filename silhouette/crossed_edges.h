@@ -21,10 +21,10 @@ namespace limn::silhouette {
 
 inline constexpr float kSnap = 0.25f;  ///< of the tolerance in pixels
 
-/// A vertex on an edge.
+/// A vertex on an edge. Without initial values: lists of them are long and mostly empty.
 struct EdgeVertex {
-  float t = 0;               ///< from point[0] to point[1], in (0, 1)
-  std::uint32_t sample = 0;  ///< k of the curve's polyline; 0: a silhouette point
+  float t;               ///< from point[0] to point[1], in (0, 1)
+  std::uint32_t sample;  ///< k of the curve's polyline; 0: a silhouette point
 };
 using EdgeVertexList = std::array<EdgeVertex, kMaxSideVertices>;
 

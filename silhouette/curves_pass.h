@@ -62,6 +62,7 @@ struct CurvesPass : ViewPass {
     std::size_t face = 0;
     bool back = false;  // the side runs against the edge
 
+    std::size_t count() const { return edge == nullptr ? 0 : edge->count; }
     // A position along the edge as one along the side.
     std::size_t rank() const {
       LIMN_ASSERT(edge != nullptr);
@@ -73,6 +74,7 @@ struct CurvesPass : ViewPass {
       return edge->firstVertex + (edge->seam && face == 1 ? edge->count : 0) + along;
     }
   };
+  using SideViews = std::array<SideView, 3>;
 
   const CurveSet& prepared;
   Scratch& scratch;
@@ -103,10 +105,10 @@ struct CurvesPass : ViewPass {
   // curves_pieces.cpp
   void placePieces();
   Slot sizeOf(std::uint32_t triangle) const;
-  bool cutOf(std::uint32_t triangle, const Outline& outline, Cut& cut) const;
-  Outline outlineOf(std::uint32_t triangle) const;
+  bool cutOf(std::uint32_t triangle, const SideViews& sides, Cut& cut) const;
+  void setOutline(std::uint32_t triangle, const SideViews& sides, Outline& outline) const;
   void emitPieces(std::size_t k);
-  void writeCentre(std::uint32_t at, std::uint32_t triangle);
+  void writeCentre(std::uint32_t at, std::uint32_t triangle, const SideViews& sides);
   void listContour();
 
   std::uint32_t firstNew() const { return static_cast<std::uint32_t>(mesh.positions.size()); }
@@ -135,6 +137,9 @@ struct CurvesPass : ViewPass {
     const Edge& edge = topology.edges()[e];
     const std::size_t face = edge.faces[1].triangle == triangle && edge.faces[1].side == side ? 1 : 0;
     return {&scratch.edges[record], face, edge.runsBack(face)};
+  }
+  SideViews sidesOf(std::uint32_t triangle) const {
+    return {sideOf(triangle, 0), sideOf(triangle, 1), sideOf(triangle, 2)};
   }
 };
 

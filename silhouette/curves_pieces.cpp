@@ -39,49 +39,44 @@ void CurvesPass::placePieces() {
 
 // Vertices and triangles that a triangle adds to the stream.
 CurvesPass::Slot CurvesPass::sizeOf(std::uint32_t triangle) const {
-  Outline outline;
-  std::uint32_t onSides = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const SideView side = sideOf(triangle, k);
-    outline.counts[k] = side.edge != nullptr ? side.edge->count : 0;
-    onSides += static_cast<std::uint32_t>(outline.counts[k]);
-  }
+  const SideViews sides = sidesOf(triangle);
+  const auto onSides = static_cast<std::uint32_t>(sides[0].count() + sides[1].count() + sides[2].count());
   Cut cut;
-  if (cutOf(triangle, outline, cut)) {
+  if (cutOf(triangle, sides, cut)) {
     const std::uint32_t samples = scratch.segments[scratch.segmentOf[triangle]].steps - 1;
     return {samples, 1 + onSides + 2 * samples};
   }
-  return outline.wantsCentre() ? Slot{1, 3 + onSides} : Slot{0, 1 + onSides};
+  return wantsCentre({sides[0].count(), sides[1].count(), sides[2].count()}) ? Slot{1, 3 + onSides}
+                                                                             : Slot{0, 1 + onSides};
 }
 
 // Whether the triangle has a segment, and where it ends on the sides.
-bool CurvesPass::cutOf(std::uint32_t triangle, const Outline& outline, Cut& cut) const {
+bool CurvesPass::cutOf(std::uint32_t triangle, const SideViews& sides, Cut& cut) const {
   const std::uint32_t index = scratch.segmentOf[triangle];
   if (index == kNone || !scratch.segments[index].exists) return false;
   const std::size_t lone = scratch.segments[index].lone, back = (lone + 2) % 3;
   cut.lone = lone;
-  cut.ends = {sideOf(triangle, lone).rank(), sideOf(triangle, back).rank()};
-  return cut.ends[0] != 0 || cut.ends[1] != outline.counts[back] + 1;
+  cut.ends = {sides[lone].rank(), sides[back].rank()};
+  return cut.ends[0] != 0 || cut.ends[1] != sides[back].count() + 1;
 }
 
-Outline CurvesPass::outlineOf(std::uint32_t triangle) const {
-  Outline outline;
+void CurvesPass::setOutline(std::uint32_t triangle, const SideViews& sides, Outline& outline) const {
   for (std::size_t k = 0; k < 3; ++k) {
     outline.corners[k] = drawnVertex(mesh.indices[3 * std::size_t{triangle} + k]);
-    const SideView side = sideOf(triangle, k);
-    outline.counts[k] = side.edge != nullptr ? side.edge->count : 0;
-    for (std::size_t i = 0; i < outline.counts[k]; ++i) outline.sides[k][i] = firstNew() + side.vertex(i);
+    outline.counts[k] = sides[k].count();
+    for (std::size_t i = 0; i < outline.counts[k]; ++i) outline.sides[k][i] = firstNew() + sides[k].vertex(i);
   }
-  return outline;
 }
 
 void CurvesPass::emitPieces(std::size_t k) {
   const std::uint32_t triangle = scratch.triangles[k];
   const Slot& slot = scratch.slots[k];
-  Outline outline = outlineOf(triangle);
+  const SideViews sides = sidesOf(triangle);
+  Outline outline;
+  setOutline(triangle, sides, outline);
   Pieces pieces;
   Cut cut;
-  if (cutOf(triangle, outline, cut)) {
+  if (cutOf(triangle, sides, cut)) {
     const Segment& segment = scratch.segments[scratch.segmentOf[triangle]];
     std::array<std::uint32_t, kMaxSegments> samples;
     for (std::uint32_t i = 1; i < segment.steps; ++i) {
@@ -96,9 +91,9 @@ void CurvesPass::emitPieces(std::size_t k) {
     cut.samples = std::span(samples).first(segment.steps - 1);
     remesh(outline, cut, bound, {mesh.positions, stream.positions}, pieces);
   } else {
-    if (outline.wantsCentre()) {
+    if (wantsCentre(outline.counts)) {
       outline.centre = firstNew() + slot.vertex;
-      writeCentre(slot.vertex, triangle);
+      writeCentre(slot.vertex, triangle, sides);
     }
     remesh(outline, pieces);
   }
@@ -112,12 +107,12 @@ void CurvesPass::emitPieces(std::size_t k) {
 }
 
 // The middle of the patch that the curves of the sides make.
-void CurvesPass::writeCentre(std::uint32_t at, std::uint32_t triangle) {
+void CurvesPass::writeCentre(std::uint32_t at, std::uint32_t triangle, const SideViews& sides) {
   constexpr float third = 1.0f / 3.0f;
   Patch patch;
   for (std::size_t k = 0; k < 3; ++k) {
     patch.corners[k] = mesh.positions[mesh.indices[3 * std::size_t{triangle} + k]];
-    const SideView side = sideOf(triangle, k);
+    const SideView& side = sides[k];
     if (side.edge == nullptr || side.edge->segments == 1) continue;
     const CurveOffsets offsets = curveOf(*side.edge).offsets;
     patch.sides[k] = {offsets[side.back ? 1 : 0], offsets[side.back ? 0 : 1]};
@@ -140,9 +135,11 @@ void CurvesPass::listContour() {
     lineTo(drawnVertex(ends[1]), false);
   }
   for (std::size_t k = 0; k < scratch.triangles.size(); ++k) {
-    const Outline outline = outlineOf(scratch.triangles[k]);
+    const SideViews sides = sidesOf(scratch.triangles[k]);
     Cut cut;
-    if (!cutOf(scratch.triangles[k], outline, cut)) continue;
+    if (!cutOf(scratch.triangles[k], sides, cut)) continue;
+    Outline outline;
+    setOutline(scratch.triangles[k], sides, outline);
     last = outline.onSide(cut.lone, cut.ends[0]);
     for (std::uint32_t v = scratch.slots[k].vertex; v < scratch.slots[k + 1].vertex; ++v)
       lineTo(firstNew() + v, true);

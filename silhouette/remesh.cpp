@@ -32,10 +32,17 @@ float turn(const vec2& a, const vec2& b, const vec2& c) {
   return p.x * q.y - p.y * q.x;
 }
 
-float distanceFromLine(const vec2& p, const vec2& a, const vec2& b) {
-  const float length = glm::length(b - a);
-  return length > 0.0f ? std::abs(turn(a, b, p)) / length : glm::length(p - a);
-}
+// Through two places, or the first of them where they are the same.
+struct Line {
+  vec2 a, b;
+  float length;
+
+  Line(const vec2& from, const vec2& to) : a(from), b(to), length(glm::length(to - from)) {}
+
+  float distance(const vec2& p) const {
+    return length > 0.0f ? std::abs(turn(a, b, p)) / length : glm::length(p - a);
+  }
+};
 
 // A polygon that is convex in the plane of weights, where vertices on a common line share a bit, but may be anything as the
 // viewer sees it.
@@ -105,7 +112,7 @@ float Polygon::coverOf(std::size_t k) const {
     const vec2& p = vertices_[other].place;
     if (other == first || other == k || other == last) continue;
     if (side * turn(a, b, p) > 0.0f && side * turn(b, c, p) > 0.0f && side * turn(c, a, p) > 0.0f)
-      cover = std::max(cover, distanceFromLine(p, a, c));
+      cover = std::max(cover, Line(a, c).distance(p));
   }
   return cover;
 }
@@ -187,11 +194,11 @@ void fanAndStrip(const CutOutline& o, const Seen& seen, Pieces& pieces) {
     return k == 0 ? o.first() : k == steps ? o.last() : samples[k - 1];
   };
   // The strip turns at the sample that is seen nearest to BC.
-  const vec2 placeB = seen[b], placeC = seen[c];
+  const Line far(seen[b], seen[c]);
   std::size_t turning = 0;
   float nearest = std::numeric_limits<float>::infinity();
   for (std::size_t k = 0; k <= steps; ++k) {
-    const float distance = distanceFromLine(seen[sample(k)], placeB, placeC);
+    const float distance = far.distance(seen[sample(k)]);
     if (distance < nearest) nearest = distance, turning = k;
   }
   for (std::size_t k = 0; k < steps; ++k) pieces.add(a, sample(k), sample(k + 1));
@@ -209,7 +216,7 @@ void remesh(const Outline& outline, Pieces& pieces) {
     around[size++] = outline.corners[k];
     for (std::size_t i = 0; i < outline.counts[k]; ++i) around[size++] = outline.sides[k][i];
   }
-  if (outline.wantsCentre()) {
+  if (wantsCentre(outline.counts)) {
     for (std::size_t k = 0; k < size; ++k)
       pieces.add(outline.centre, around[k], around[k + 1 == size ? 0 : k + 1]);
     return;

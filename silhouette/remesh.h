@@ -26,6 +26,11 @@ namespace limn::silhouette {
 /// Vertices that a side has between its corners: the samples of a curve and a silhouette point of either face.
 inline constexpr std::size_t kMaxSideVertices = kMaxSegments + 1;
 
+/// Whether a triangle without a segment is cut around its middle, by the numbers of vertices on its sides.
+inline bool wantsCentre(const std::array<std::size_t, 3>& counts) {
+  return (counts[0] > 0) + (counts[1] > 0) + (counts[2] > 0) > 1;
+}
+
 /// A triangle with the vertices on its sides, by number; the corners counter-clockwise.
 struct Outline {
   std::array<std::uint32_t, 3> corners{};
@@ -40,7 +45,6 @@ struct Outline {
     if (k == 0) return corners[side];
     return k > counts[side] ? corners[(side + 1) % 3] : sides[side][k - 1];
   }
-  bool wantsCentre() const { return (counts[0] > 0) + (counts[1] > 0) + (counts[2] > 0) > 1; }
 };
 
 /// A segment across an outline: from the side that leaves corner `lone` to the side that comes back to it.

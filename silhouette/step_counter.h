@@ -34,7 +34,7 @@ class StepCounter {
 
  private:
   void count() {
-    CurveErrors errors;
+    CurveErrors errors{};
     if (parameters_.segments == 0) curveErrors(bound_, batch_, errors);
     for (std::size_t i = 0; i < batch_.count; ++i) {
       bool capped = false;
