@@ -44,6 +44,15 @@ struct SegmentEnd {
   float trust = 1;   ///< of the bridge it lies on, there
 };
 
+/// Where a silhouette curve crosses an edge, in one of the edge's faces.
+struct SilhouettePoint {
+  bool exists = false;
+  float parameter = 0;     ///< along the edge, from point[0] to point[1]
+  glm::vec3 normal{0.0f};  ///< the linear one, not unit
+  SegmentEnd end{};
+};
+using SilhouettePoints = std::array<SilhouettePoint, 2>;  ///< per face
+
 /// The segment's curve: that of an edge between its ends, bent as far as the bridges at its ends are trusted and, if
 /// `robust`, neither end much more than the other.
 CurveOffsets segmentCurve(const SegmentEnd& a, const SegmentEnd& b, bool robust);

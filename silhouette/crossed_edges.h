@@ -34,8 +34,7 @@ struct CrossedEdge {
   std::uint32_t segments = 1;        ///< of the curve's polyline
   std::array<bool, 2> crosses{};     ///< per face: it has a silhouette point
   std::array<float, 2> parameter{};  ///< of the silhouette point, or of the vertex that it became
-  std::array<SegmentEnd, 2>
-      points;  ///< the silhouette points before they became vertices, where there are any
+  std::uint32_t points = 0;          ///< where it crosses: EdgeSearch::points, before they became vertices
   std::array<std::uint32_t, 2>
       rank{};                     ///< where it is: 0 = point[0], 1 … count a vertex, count + 1 = point[1]
   std::uint32_t count = 0;        ///< vertices between the ends

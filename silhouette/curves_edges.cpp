@@ -5,10 +5,8 @@
 // edge_search.h and crossed_edges.h say.
 #include <atomic>
 #include <bit>
-#include <cmath>
-#include <glm/geometric.hpp>
-#include <numeric>
 
+#include "silhouette/collect.h"
 #include "silhouette/curves_pass.h"
 #include "silhouette/step_counter.h"
 
@@ -21,34 +19,12 @@ constexpr std::size_t kItemsPerBlock = 4096;
 
 }  // namespace
 
-// Puts fill(item)'s results into `out`, in order: count(item) of them.
-template <class T, class Count, class Fill>
-void CurvesPass::collect(std::size_t items, std::vector<T>& out, const Count& count, const Fill& fill) {
-  std::vector<std::uint32_t>& starts = scratch.blockCounts;
-  starts.assign((items + kItemsPerBlock - 1) / kItemsPerBlock + 1, 0);
-  crew.forBlocks(items, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t sum = 0;
-    for (std::size_t item = begin; item < end; ++item) sum += count(item);
-    starts[begin / kItemsPerBlock + 1] = sum;
-  });
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  out.resize(starts.back());
-  crew.forBlocks(items, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t at = starts[begin / kItemsPerBlock];
-    for (std::size_t item = begin; item < end; ++item)
-      if (const std::uint32_t wanted = count(item); wanted > 0) {
-        fill(item, at);
-        at += wanted;
-      }
-  });
-}
-
 // Lists the edges that have vertices of their own and marks their triangles.
 void CurvesPass::findEdges() {
-  const auto wanted = [&](std::size_t e) -> std::uint32_t { return scratch.search.isListed(e) ? 1 : 0; };
-  collect(prepared.links.size(), scratch.edges, wanted, [&](std::size_t e, std::uint32_t at) {
-    scratch.edges[at] = crossedEdge(static_cast<std::uint32_t>(e));
-  });
+  collect(
+      crew, scratch.search.candidates.size(), scratch.blockCounts, scratch.edges,
+      [&](std::size_t k) { return scratch.search.isListed(k) ? 1U : 0U; },
+      [&](std::size_t k, std::uint32_t at) { scratch.edges[at] = crossedEdge(k); });
   report.smoothEdges = scratch.edges.size();
   crew.forBlocks(scratch.edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     StepCounter steps(bound, parameters);
@@ -69,31 +45,20 @@ void CurvesPass::findEdges() {
   });
 }
 
-CrossedEdge CurvesPass::crossedEdge(std::uint32_t e) const {
-  const EdgeVertices& v = prepared.vertices[e];
+CrossedEdge CurvesPass::crossedEdge(std::size_t candidate) const {
+  const EdgeSearch& search = scratch.search;
   CrossedEdge record;
-  record.edge = e;
-  record.alpha = scratch.search.alphas[e];
-  record.seam = prepared.links[e].seam;
+  record.edge = search.candidates[candidate];
+  record.alpha = search.alphas[candidate];
+  record.seam = prepared.links[record.edge].seam;
+  if (!search.isCrossed(record.edge)) return record;
+  record.points = search.pointsOf[record.edge];
   for (std::size_t face = 0; face < 2; ++face) {
-    record.crosses[face] = scratch.search.visible[v[face][0]] != scratch.search.visible[v[face][1]];
-    if (!record.crosses[face]) continue;
-    record.parameter[face] = scratch.search.crossings[e][face];
-    record.points[face] = face == 0 || record.seam ? silhouettePoint(record, face) : record.points[0];
+    const SilhouettePoint& point = search.points[record.points][face];
+    record.crosses[face] = point.exists;
+    record.parameter[face] = point.parameter;
   }
   return record;
-}
-
-// The unit normal is the linear one of the face, or its triangle's where the ends' normals cancel.
-SegmentEnd CurvesPass::silhouettePoint(const CrossedEdge& record, std::size_t face) const {
-  const float t = record.parameter[face];
-  const std::array<std::uint32_t, 2>& v = prepared.vertices[record.edge][face];
-  const vec3 normal = (1.0f - t) * mesh.normals[v[0]] + t * mesh.normals[v[1]];
-  const float size2 = glm::dot(normal, normal);
-  const vec3 unit = size2 > 1e-12f ? normal / std::sqrt(size2)
-                                   : prepared.faceNormals[topology.edges()[record.edge].faces[face].triangle];
-  const std::array<float, 2>& trust = prepared.trust[record.edge];
-  return {bridgeOf(record).point(t), unit, (1.0f - t) * trust[0] + t * trust[1]};
 }
 
 void CurvesPass::reportCapped(std::size_t count) {
@@ -103,7 +68,7 @@ void CurvesPass::reportCapped(std::size_t count) {
 void CurvesPass::listReplaced(std::vector<std::uint32_t>& triangles) {
   const std::vector<std::uint64_t>& words = stream.replaced;
   collect(
-      words.size(), triangles,
+      crew, words.size(), scratch.blockCounts, triangles,
       [&](std::size_t word) { return static_cast<std::uint32_t>(std::popcount(words[word])); },
       [&](std::size_t word, std::uint32_t at) {
         for (std::uint64_t rest = words[word]; rest != 0; rest &= rest - 1)

@@ -85,11 +85,8 @@ struct CurvesPass : ViewPass {
   void forgetRecords();
 
   // curves_edges.cpp
-  template <class T, class Count, class Fill>
-  void collect(std::size_t items, std::vector<T>& out, const Count& count, const Fill& fill);
   void findEdges();
-  CrossedEdge crossedEdge(std::uint32_t e) const;
-  SegmentEnd silhouettePoint(const CrossedEdge& record, std::size_t face) const;
+  CrossedEdge crossedEdge(std::size_t candidate) const;
   void reportCapped(std::size_t count);
   void listReplaced(std::vector<std::uint32_t>& triangles);
   void placeEdges();

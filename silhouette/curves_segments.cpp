@@ -47,7 +47,7 @@ CurvesPass::Segment CurvesPass::segmentOf(std::uint32_t triangle) const {
   for (std::size_t end = 0; end < 2; ++end) {
     const SideView side = sideOf(triangle, sides[end]);
     if (side.edge == nullptr || !side.edge->crosses[side.face]) return segment;
-    segment.ends[end] = side.edge->points[side.face];
+    segment.ends[end] = scratch.search.points[side.edge->points][side.face].end;
     segment.weights[end] = sideWeights(sides[end], side.parameter());
   }
   segment.exists = true;

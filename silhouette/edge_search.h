@@ -17,28 +17,34 @@
 namespace limn::silhouette {
 
 struct EdgeSearch {
-  std::vector<float> heights;                   ///< per vertex of the mesh: contour.h, facing()
-  std::vector<std::uint8_t> visible;            ///< likewise
-  std::vector<float> planeHeights;              ///< per triangle: the eye's distance from its plane
-  std::vector<std::uint8_t> states;             ///< per edge
-  std::vector<std::array<float, 2>> crossings;  ///< per edge that has silhouette points: where, for each face
-  std::vector<float> alphas;  ///< per edge that is listed: the share of its curve that is shown
+  std::vector<float> heights;              ///< per vertex of the mesh: contour.h, facing()
+  std::vector<std::uint8_t> visible;       ///< likewise
+  std::vector<float> planeHeights;         ///< per triangle: the eye's distance from its plane
+  std::vector<std::uint8_t> states;        ///< per edge
+  std::vector<std::uint32_t> candidates;   ///< edges that may matter, ascending
+  std::vector<float> alphas;               ///< of each: the share of its curve that is shown
+  std::vector<SilhouettePoints> points;    ///< of the candidates that silhouette curves cross, in order
+  std::vector<std::uint32_t> pointsOf;     ///< per edge that is crossed: index into points
+  std::vector<std::uint32_t> blockCounts;  ///< scratch memory of collect()
 
   /// Curves that stay within a quarter of the tolerance of their chords count as straight; not so with fixed segments.
   void run(const Mesh& mesh, const Topology& topology, const CurveSet& curves, const View& view,
            const Parameters& parameters, const Crew& crew);
 
-  /// Whether the edge has silhouette points or shows its curve.
-  bool isListed(std::size_t e) const { return (states[e] & kListed) != 0; }
+  /// Whether candidate `k` has silhouette points or shows its curve.
+  bool isListed(std::size_t k) const { return alphas[k] > 0.0f || isCrossed(candidates[k]); }
+
+  /// Whether edge `e` has silhouette points, in one of its faces at least.
+  bool isCrossed(std::size_t e) const { return (states[e] & kCrossed) != 0; }
 
  private:
-  enum State : std::uint8_t { kCrossed = 1, kMayBend = 2, kListed = 4 };
+  enum State : std::uint8_t { kCrossed = 1, kMayBend = 2 };
 
   void findVisible(const CurveSet& curves, const View& view, const Crew& crew);
+  std::uint8_t stateOf(std::size_t e, const CurveSet& curves, float largest) const;
+  void findPoints(const Mesh& mesh, const CurveSet& curves, const View& view, const Crew& crew);
   void findAlphas(std::size_t begin, std::size_t end, const RingTest& ring, const PixelBound& bound,
                   const Parameters& parameters);
-  std::uint8_t stateOf(std::size_t e, const Mesh& mesh, const CurveSet& curves, const View& view,
-                       float largest);
 };
 
 }  // namespace limn::silhouette

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "silhouette/contour.h"
 #include "silhouette/silhouetteness.h"
 
 namespace limn::silhouette {
@@ -57,9 +56,9 @@ float RingTest::besideSegment(const Middle& edge, const Side& face) const {
     const std::array<std::uint32_t, 2>& v = curves.vertices[other][own];
     if (visible[v[0]] == visible[v[1]]) continue;
     if (!link.bridged) return 1.0f;
-    const float t = crossings[other][own];
-    middle += 0.5f * curvePoint(mesh.positions[v[0]], mesh.positions[v[1]], curves.curves[other], t);
-    normal += (1.0f - t) * mesh.normals[v[0]] + t * mesh.normals[v[1]];
+    const SilhouettePoint& point = points[pointsOf[other]][own];
+    middle += 0.5f * point.end.place;
+    normal += point.normal;
   }
   const float size2 = dot(normal, normal);
   return size2 > 0.0f ? standsOut(edge, middle, normal / std::sqrt(size2)) : 1.0f;

@@ -12,7 +12,9 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <span>
+#include <vector>
 
+#include "silhouette/contour.h"
 #include "silhouette/curve_set.h"
 
 namespace limn::silhouette {
@@ -24,8 +26,8 @@ struct RingTest {
   const View& view;
   std::span<const std::uint8_t> visible;  ///< per vertex of the mesh
   std::span<const float> heights;         ///< likewise: ⟨n, v⟩
-  std::span<const std::array<float, 2>>
-      crossings;  ///< per edge and face, where it crosses: contourParameter()
+  const std::vector<SilhouettePoints>& points;
+  std::span<const std::uint32_t> pointsOf;  ///< per edge that is crossed: index into points
 
   /// No edge of which the product of the eye's distances from the planes of its faces is as large as this has
   /// an α.

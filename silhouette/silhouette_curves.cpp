@@ -85,7 +85,9 @@ class SilhouetteCurves final : public MethodState {
     };
     levelCapacity(scratch_, searched(&EdgeSearch::heights), searched(&EdgeSearch::visible),
                   searched(&EdgeSearch::planeHeights), searched(&EdgeSearch::states),
-                  searched(&EdgeSearch::crossings), searched(&EdgeSearch::alphas));
+                  searched(&EdgeSearch::candidates), searched(&EdgeSearch::alphas),
+                  searched(&EdgeSearch::points), searched(&EdgeSearch::pointsOf),
+                  searched(&EdgeSearch::blockCounts));
   }
 
  private:
