@@ -40,7 +40,7 @@ void CurvesPass::findEdges() {
       if (record.segments == 1 && !record.crosses[0] && !record.crosses[1]) continue;
       scratch.recordOf[record.edge] = static_cast<std::uint32_t>(k);
       for (const Side& face : topology.edges()[record.edge].faces)
-        if (face.triangle != kNone) markTriangle(stream.replaced, face.triangle);
+        if (face.triangle != kNone) markTriangle(stream.replaced, face.triangle, crew.isAlone());
     }
   });
 }

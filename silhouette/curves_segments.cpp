@@ -96,7 +96,7 @@ void CurvesPass::addPlanes(std::uint32_t triangle, const Segment& segment) {
 void CurvesPass::lower(std::uint32_t point, const vec3& displacement) {
   for (const std::uint32_t side : prepared.blocking.sidesFrom(point)) {
     const std::uint32_t vertex = mesh.indices[side];
-    markTriangle(stream.replaced, side / 3);
+    markTriangle(stream.replaced, side / 3, crew.isAlone());
     if (scratch.loweredOf[vertex] != kNone) continue;
     const auto at = static_cast<std::uint32_t>(scratch.lowered.size());
     scratch.lowered.push_back(vertex);

@@ -78,13 +78,8 @@ void PatchesPass::describe(std::size_t cluster, std::uint32_t record, CurveBatch
     const Edge& edge = topology.edges()[smooth.edge];
     smooth.firstSide = 3 * edge.faces[0].triangle + edge.faces[0].side;
     smooth.descending = edge.descending;
-    for (const Side& face : edge.faces) {
-      if (face.triangle == kNone) continue;
-      if (alone)
-        scratch.candidates[face.triangle / 64] |= std::uint64_t{1} << (face.triangle % 64);
-      else
-        markTriangle(scratch.candidates, face.triangle);
-    }
+    for (const Side& face : edge.faces)
+      if (face.triangle != kNone) markTriangle(scratch.candidates, face.triangle, alone);
   }
 }
 

@@ -81,10 +81,13 @@ class StreamWriter {
   RefinedStream& stream_;
 };
 
-/// Sets the bit of a triangle; blocks that run side by side may share a word.
-inline void markTriangle(std::vector<std::uint64_t>& bits, std::uint32_t triangle) {
-  std::atomic_ref<std::uint64_t>(bits[triangle / 64])
-      .fetch_or(std::uint64_t{1} << (triangle % 64), std::memory_order_relaxed);
+/// Sets the bit of a triangle. Blocks may share a word, unless they are `alone`: one after the other.
+inline void markTriangle(std::vector<std::uint64_t>& bits, std::uint32_t triangle, bool alone) {
+  const std::uint64_t bit = std::uint64_t{1} << (triangle % 64);
+  if (alone)
+    bits[triangle / 64] |= bit;
+  else
+    std::atomic_ref<std::uint64_t>(bits[triangle / 64]).fetch_or(bit, std::memory_order_relaxed);
 }
 
 }  // namespace limn::silhouette
