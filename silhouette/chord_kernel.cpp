@@ -5,30 +5,10 @@
 #include <hwy/foreach_target.h>
 // After foreach_target, as Highway wants it.
 #include <hwy/highway.h>
+#include "silhouette/vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace limn::silhouette::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Tag = hn::CappedTag<float, 16>;
-using V = hn::Vec<Tag>;
-
-struct Vector {
-  V x, y, z;
-};
-
-Vector add(const Vector& a, const Vector& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-Vector subtract(const Vector& a, const Vector& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-Vector load(const CurveBatch& curves, std::size_t k, std::size_t i) {
-  const Tag tag;
-  return {hn::LoadU(tag, curves.coordinates[k] + i), hn::LoadU(tag, curves.coordinates[k + 1] + i),
-          hn::LoadU(tag, curves.coordinates[k + 2] + i)};
-}
-
 // Column by column, as glm multiplies.
 Vector apply(const glm::mat3& m, const Vector& v) {
   const Tag tag;
@@ -58,20 +38,16 @@ struct Squares {
 // PixelBound::curveError of one vector of curves, step by step.
 void errorsAt(const PixelMap& map, const CurveBatch& curves, std::size_t i, CurveErrors& errors) {
   const Tag tag;
-  const V two = hn::Set(tag, 2.0f), three = hn::Set(tag, 3.0f);
-  const Vector d0 = apply(map.linear, load(curves, 6, i)), d1 = apply(map.linear, load(curves, 9, i));
-  const Vector first{hn::Sub(d1.x, hn::Mul(two, d0.x)), hn::Sub(d1.y, hn::Mul(two, d0.y)),
-                     hn::Sub(d1.z, hn::Mul(two, d0.z))};
-  const Vector second{hn::Sub(d0.x, hn::Mul(two, d1.x)), hn::Sub(d0.y, hn::Mul(two, d1.y)),
-                      hn::Sub(d0.z, hn::Mul(two, d1.z))};
+  const V two = hn::Set(tag, 2.0f);
+  const Vector d0 = apply(map.linear, load(curves, 2, i)), d1 = apply(map.linear, load(curves, 3, i));
+  const Vector first = subtract(d1, multiply(two, d0)), second = subtract(d0, multiply(two, d1));
   Squares squares{hn::Zero(tag), hn::Zero(tag), hn::Zero(tag)};
   V nearest = hn::Set(tag, 1.0f);
   if (map.perspective) {
-    const Vector origin{hn::Set(tag, map.origin.x), hn::Set(tag, map.origin.y), hn::Set(tag, map.origin.z)};
+    const Vector origin = spread(map.origin);
     const Vector start = add(apply(map.linear, load(curves, 0, i)), origin),
-                 end = add(apply(map.linear, load(curves, 3, i)), origin);
-    const Vector way = subtract(end, start);
-    const Vector third{hn::Div(way.x, three), hn::Div(way.y, three), hn::Div(way.z, three)};
+                 end = add(apply(map.linear, load(curves, 1, i)), origin);
+    const Vector third = divide(subtract(end, start), hn::Set(tag, 3.0f));
     const Vector control[4] = {start, add(add(start, third), d0), add(subtract(end, third), d1), end};
     const V nearPlane = hn::Set(tag, map.nearPlane);
     nearest = hn::Min(hn::Min(control[0].z, control[1].z), hn::Min(control[2].z, control[3].z));

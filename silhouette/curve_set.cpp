@@ -1,6 +1,5 @@
 #include "silhouette/curve_set.h"
 
-#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -29,21 +28,6 @@ void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const Paramet
   computeFaceNormals(mesh, topology, crew, faceNormals);
   spread(mesh, crew);
   blocking.prepare(mesh, topology);
-}
-
-SilhouettePoint CurveSet::silhouettePoint(const Mesh& mesh, const View& view, std::size_t e,
-                                          std::size_t face) const {
-  const std::array<std::uint32_t, 2>& v = vertices[e][face];
-  const std::array<glm::vec3, 2> p{mesh.positions[v[0]], mesh.positions[v[1]]},
-      n{mesh.normals[v[0]], mesh.normals[v[1]]};
-  const float t = contourParameter(view, p, n);
-  const glm::vec3 normal = (1.0f - t) * n[0] + t * n[1];
-  const float size2 = glm::dot(normal, normal);
-  const glm::vec3 unit = size2 > 1e-12f ? normal / std::sqrt(size2) : faceNormals[links[e].faces[face]];
-  return {true,
-          t,
-          normal,
-          {curvePoint(p[0], p[1], curves[e], t), unit, (1.0f - t) * trust[e][0] + t * trust[e][1]}};
 }
 
 void CurveSet::linkEdge(std::size_t e, const Mesh& mesh, const Topology& topology,

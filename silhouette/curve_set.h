@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "silhouette/blocking.h"
-#include "silhouette/contour.h"
 #include "silhouette/edge_curves.h"
 #include "silhouette/facing_kernel.h"
 #include "silhouette/method.h"
@@ -56,9 +55,6 @@ struct CurveSet {
   std::vector<std::array<float, 2>> trust;  ///< in the ends of bridges, 0 … 1: robust_ends.h
   std::vector<glm::vec3> faceNormals;       ///< unit; zero for degenerate triangles
   Blocking blocking;
-
-  /// Of an edge whose ends, in that face, differ in visibility. Where the normals of the ends cancel, the face's counts.
-  SilhouettePoint silhouettePoint(const Mesh& mesh, const View& view, std::size_t e, std::size_t face) const;
 
   void prepare(const Mesh& mesh, const Topology& topology, const Parameters& parameters, const Crew& crew);
 

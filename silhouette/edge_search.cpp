@@ -2,6 +2,7 @@
 
 #include "silhouette/chord_kernel.h"
 #include "silhouette/collect.h"
+#include "silhouette/crossing_kernel.h"
 #include "silhouette/facing_kernel.h"
 
 namespace limn::silhouette {
@@ -9,6 +10,55 @@ namespace {
 
 constexpr std::size_t kItemsPerBlock = 4096;
 constexpr float kUnseen = 0.25f;  // share of the tolerance
+
+// Silhouette points by batches.
+class PointFinder {
+ public:
+  PointFinder(const Mesh& mesh, const CurveSet& curves, const View& view)
+      : mesh_(mesh), curves_(curves), view_(view) {}
+
+  /// Sets the point of a face, and without a seam that of both, at the latest in finish(); until then it must not move.
+  void add(std::uint32_t e, std::size_t face, SilhouettePoints& points) {
+    const std::array<std::uint32_t, 2>& v = curves_.vertices[e][face];
+    const CurveOffsets& d = curves_.curves[e];
+    wanted_[batch_.count] = {e, face, &points};
+    batch_.add(mesh_.positions[v[0]], mesh_.positions[v[1]], mesh_.normals[v[0]], mesh_.normals[v[1]], d[0],
+               d[1]);
+    if (batch_.count == CrossedBatch::kCapacity) find();
+  }
+  void finish() { find(); }
+
+ private:
+  struct Wanted {
+    std::uint32_t edge;
+    std::size_t face;
+    SilhouettePoints* points;
+  };
+
+  void find() {
+    computeCrossings(view_, batch_, crossings_);
+    for (std::size_t i = 0; i < batch_.count; ++i) {
+      const auto& [e, face, points] = wanted_[i];
+      const float t = crossings_.parameters[i];
+      const std::array<float, 2>& trust = curves_.trust[e];
+      // Where the normals of the ends cancel, the face's counts.
+      const glm::vec3 unit = crossings_.squares[i] > 1e-12f
+                                 ? crossings_.unit(i)
+                                 : curves_.faceNormals[curves_.links[e].faces[face]];
+      (*points)[face] = {
+          true, t, crossings_.normal(i), {crossings_.place(i), unit, (1.0f - t) * trust[0] + t * trust[1]}};
+      if (!curves_.links[e].seam) (*points)[1] = (*points)[0];
+    }
+    batch_.count = 0;
+  }
+
+  const Mesh& mesh_;
+  const CurveSet& curves_;
+  const View& view_;
+  CrossedBatch batch_{};
+  Crossings crossings_;
+  std::array<Wanted, CrossedBatch::kCapacity> wanted_;
+};
 
 }  // namespace
 
@@ -60,25 +110,32 @@ std::uint8_t EdgeSearch::stateOf(std::size_t e, const CurveSet& curves, float la
     differs = differs || visible[second[0]] != visible[second[1]];
   }
   const unsigned mayBend = (link.always ? 1U : 0U) | ((link.mayBend ? 1U : 0U) & (isNear ? 1U : 0U));
-  const unsigned crossed = (differs ? 1U : 0U) & ((link.bridged ? 1U : 0U) | (link.always ? 1U : 0U));
-  return static_cast<std::uint8_t>(crossed * kCrossed + mayBend * kMayBend);
+  const unsigned isCut = (differs ? 1U : 0U) & ((link.bridged ? 1U : 0U) | (link.always ? 1U : 0U));
+  return static_cast<std::uint8_t>(isCut * kCrossed + mayBend * kMayBend);
 }
 
 void EdgeSearch::findPoints(const Mesh& mesh, const CurveSet& curves, const View& view, const Crew& crew) {
   collect(
-      crew, candidates.size(), blockCounts, points,
+      crew, candidates.size(), blockCounts, crossed,
       [&](std::size_t k) { return isCrossed(candidates[k]) ? 1U : 0U; },
-      [&](std::size_t k, std::uint32_t at) {
-        const std::uint32_t e = candidates[k];
-        pointsOf[e] = at;
-        const std::size_t faces = curves.links[e].seam ? 2 : 1;
-        for (std::size_t face = 0; face < faces; ++face) {
-          const std::array<std::uint32_t, 2>& v = curves.vertices[e][face];
-          points[at][face] = visible[v[0]] != visible[v[1]] ? curves.silhouettePoint(mesh, view, e, face)
-                                                            : SilhouettePoint{};
-        }
-        if (faces == 1) points[at][1] = points[at][0];
-      });
+      [&](std::size_t k, std::uint32_t at) { crossed[at] = candidates[k]; });
+  points.resize(crossed.size());
+  crew.forBlocks(crossed.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    PointFinder finder(mesh, curves, view);
+    for (std::size_t at = begin; at < end; ++at) {
+      const std::uint32_t e = crossed[at];
+      const EdgeVertices& v = curves.vertices[e];
+      pointsOf[e] = static_cast<std::uint32_t>(at);
+      points[at] = {};
+      if (!curves.links[e].seam) {
+        finder.add(e, 0, points[at]);
+        continue;
+      }
+      for (std::size_t face = 0; face < 2; ++face)
+        if (visible[v[face][0]] != visible[v[face][1]]) finder.add(e, face, points[at]);
+    }
+    finder.finish();
+  });
 }
 
 // Of candidates begin … end - 1. Curves that nobody sees are told by batches before anything around them is looked at: on a
@@ -105,7 +162,8 @@ void EdgeSearch::findAlphas(std::size_t begin, std::size_t end, const RingTest& 
     alphas[k] = ring.silhouetteness(e);
     if (alphas[k] == 0.0f) continue;
     places[batch.count] = k;
-    batch.add(ring.mesh.positions[link.ends[0]], ring.mesh.positions[link.ends[1]], ring.curves.curves[e]);
+    const CurveOffsets& d = ring.curves.curves[e];
+    batch.add(ring.mesh.positions[link.ends[0]], ring.mesh.positions[link.ends[1]], d[0], d[1]);
     if (batch.count == CurveBatch::kCapacity) lookAround();
   }
   lookAround();

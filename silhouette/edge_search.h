@@ -23,7 +23,8 @@ struct EdgeSearch {
   std::vector<std::uint8_t> states;        ///< per edge
   std::vector<std::uint32_t> candidates;   ///< edges that may matter, ascending
   std::vector<float> alphas;               ///< of each: the share of its curve that is shown
-  std::vector<SilhouettePoints> points;    ///< of the candidates that silhouette curves cross, in order
+  std::vector<std::uint32_t> crossed;      ///< those that silhouette curves cross
+  std::vector<SilhouettePoints> points;    ///< where, of each
   std::vector<std::uint32_t> pointsOf;     ///< per edge that is crossed: index into points
   std::vector<std::uint32_t> blockCounts;  ///< scratch memory of collect()
 

@@ -73,7 +73,8 @@ void PatchesPass::describe(std::size_t cluster, std::uint32_t record, CurveBatch
     const CurveOffsets& d = curves[smooth.edge];
     smooth.offsets = {smooth.alpha * d[0], smooth.alpha * d[1]};
     smooth.ends = clusters.endsAt(place);
-    batch.add(mesh.positions[smooth.ends[0]], mesh.positions[smooth.ends[1]], smooth.offsets);
+    batch.add(mesh.positions[smooth.ends[0]], mesh.positions[smooth.ends[1]], smooth.offsets[0],
+              smooth.offsets[1]);
     scratch.recordOf[smooth.edge] = record;
     const Edge& edge = topology.edges()[smooth.edge];
     smooth.firstSide = 3 * edge.faces[0].triangle + edge.faces[0].side;

@@ -86,8 +86,8 @@ class SilhouetteCurves final : public MethodState {
     levelCapacity(scratch_, searched(&EdgeSearch::heights), searched(&EdgeSearch::visible),
                   searched(&EdgeSearch::planeHeights), searched(&EdgeSearch::states),
                   searched(&EdgeSearch::candidates), searched(&EdgeSearch::alphas),
-                  searched(&EdgeSearch::points), searched(&EdgeSearch::pointsOf),
-                  searched(&EdgeSearch::blockCounts));
+                  searched(&EdgeSearch::crossed), searched(&EdgeSearch::points),
+                  searched(&EdgeSearch::pointsOf), searched(&EdgeSearch::blockCounts));
   }
 
  private:

@@ -22,7 +22,7 @@ class StepCounter {
   /// Sets `steps`, at the latest in finish(); until then it must not move.
   void add(const glm::vec3& p, const glm::vec3& q, const CurveOffsets& offsets, std::uint32_t& steps) {
     wanted_[batch_.count] = &steps;
-    batch_.add(p, q, offsets);
+    batch_.add(p, q, offsets[0], offsets[1]);
     if (batch_.count == CurveBatch::kCapacity) count();
   }
 

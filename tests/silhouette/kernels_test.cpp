@@ -11,6 +11,8 @@
 #include "shapes.h"
 #include "silhouette/alpha_kernel.h"
 #include "silhouette/chord_kernel.h"
+#include "silhouette/contour.h"
+#include "silhouette/crossing_kernel.h"
 
 namespace limn::silhouette::test {
 namespace {
@@ -33,6 +35,10 @@ void onEveryTarget(const Body& body) {
     hwy::SetSupportedTargetsForTest(0);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
   }
+}
+
+std::uint32_t bits(float x) {
+  return std::bit_cast<std::uint32_t>(x);
 }
 
 TEST(AlphaKernel, EveryTargetGivesTheScalarBits) {
@@ -64,8 +70,7 @@ TEST(AlphaKernel, EveryTargetGivesTheScalarBits) {
       onEveryTarget([&] {
         EXPECT_EQ(computeAlphas(block, crossing, 0.1f, alphas.data()), bends);
         for (std::size_t i = 0; i < kEdgesPerCluster; ++i) {
-          ASSERT_EQ(std::bit_cast<std::uint32_t>(alphas[i]), std::bit_cast<std::uint32_t>(expected[i]))
-              << "round " << round << ", edge " << i;
+          ASSERT_EQ(bits(alphas[i]), bits(expected[i])) << "round " << round << ", edge " << i;
           ASSERT_TRUE(alphas[i] >= 0.0f && alphas[i] <= 1.0f);
         }
       });
@@ -83,19 +88,48 @@ TEST(ChordKernel, EveryTargetGivesTheScalarBits) {
       while (batch.count < count) {
         const vec3 p = 2.0f * random.vector(), q = 2.0f * random.vector();
         const CurveOffsets d{random.vector(), random.vector()};
-        batch.add(p, q, d);
+        batch.add(p, q, d[0], d[1]);
         expected.push_back(bound.curveError(p, q, d));
       }
       onEveryTarget([&] {
         CurveErrors errors;
         curveErrors(bound, batch, errors);
         for (std::size_t i = 0; i < count; ++i) {
-          ASSERT_EQ(std::bit_cast<std::uint32_t>(errors.bends[i]),
-                    std::bit_cast<std::uint32_t>(expected[i].bend))
-              << i;
-          ASSERT_EQ(std::bit_cast<std::uint32_t>(errors.chords[i]),
-                    std::bit_cast<std::uint32_t>(expected[i].chord))
-              << i;
+          ASSERT_EQ(bits(errors.bends[i]), bits(expected[i].bend)) << i;
+          ASSERT_EQ(bits(errors.chords[i]), bits(expected[i].chord)) << i;
+        }
+      });
+    }
+  }
+}
+
+// Edges that the contour crosses: near an end, in the middle, edge on, with normals that cancel and that are zero.
+TEST(CrossingKernel, EveryTargetGivesTheScalarBits) {
+  Random random{std::mt19937(5)};
+  for (const View& view : someViews(2.0f)) {
+    for (const std::size_t count : {std::size_t{1}, std::size_t{17}, CrossedBatch::kCapacity}) {
+      CrossedBatch batch{};
+      while (batch.count < count) {
+        const std::size_t kind = random.engine() % 4;
+        const vec3 p = 2.0f * random.vector(),
+                   q = kind == 1 ? p + 1e-6f * random.vector() : 2.0f * random.vector();
+        const vec3 n = kind == 3 ? vec3(0.0f) : random.vector(), m = kind == 2 ? -n : random.vector();
+        if ((facing(view, p, n) >= 0.0f) == (facing(view, q, m) >= 0.0f)) continue;
+        batch.add(p, q, n, m, random.vector(), random.vector());
+      }
+      Crossings expected{}, crossings{};
+      computeCrossingsScalar(view, batch, expected);
+      onEveryTarget([&] {
+        computeCrossings(view, batch, crossings);
+        for (std::size_t i = 0; i < count; ++i) {
+          ASSERT_TRUE(expected.parameters[i] >= 0.0f && expected.parameters[i] <= 1.0f) << i;
+          ASSERT_EQ(bits(crossings.parameters[i]), bits(expected.parameters[i])) << i;
+          ASSERT_EQ(bits(crossings.squares[i]), bits(expected.squares[i])) << i;
+          // The unit normal of a zero one is no number.
+          const std::size_t numbers = expected.squares[i] > 0.0f ? 9 : 6;
+          for (std::size_t k = 0; k < numbers; ++k)
+            ASSERT_EQ(bits(crossings.vectors.coordinates[k][i]), bits(expected.vectors.coordinates[k][i]))
+                << "coordinate " << k << " of " << i;
         }
       });
     }
