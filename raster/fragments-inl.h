@@ -1,5 +1,9 @@
 // Pixels whose samples show different things: their parts are gathered, shaded a vector at a time and summed up.
 // Definition: Shader::pixel in shading.cpp.
+//
+// Such pixels wait in a list, so that vectors of them are full. A vector's fragments are listed sample by sample: of the
+// pixels whose sample is the first to show its triangle, side by side. What they amount to is spread over the same pixels
+// and added, again sample by sample.
 #if defined(LIMN_RASTER_FRAGMENTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef LIMN_RASTER_FRAGMENTS_INL_H_
 #undef LIMN_RASTER_FRAGMENTS_INL_H_
@@ -7,7 +11,9 @@
 #define LIMN_RASTER_FRAGMENTS_INL_H_
 #endif
 
+#include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "raster/attributes-inl.h"
 #include "raster/points-inl.h"
@@ -17,283 +23,250 @@ namespace limn::raster {
 namespace HWY_NAMESPACE {
 
 #if HWY_TARGET != HWY_SCALAR
-/// The bits at multiples of four, side by side.
-HWY_INLINE unsigned everyFourthBit(std::uint64_t bits) {
-#if HWY_TARGET <= HWY_AVX3
-  return static_cast<unsigned>(_pext_u64(bits, 0x1111111111111111U));
-#else
-  bits &= 0x1111111111111111U;
-  bits = (bits | bits >> 3U) & 0x0303030303030303U;
-  bits = (bits | bits >> 6U) & 0x000f000f000f000fU;
-  bits = (bits | bits >> 12U) & 0x000000ff000000ffU;
-  return static_cast<unsigned>(bits | bits >> 24U) & 0xffffU;
-#endif
-}
-
-/// The bits of four masks one after the other.
-HWY_INLINE std::uint64_t bitsOf(const MI (&masks)[4]) {
-#if HWY_TARGET <= HWY_AVX3
-  const __mmask32 low = _mm512_kunpackw(masks[1].raw, masks[0].raw),
-                  high = _mm512_kunpackw(masks[3].raw, masks[2].raw);
-  return _mm512_kunpackd(high, low);
-#else
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < 4; ++i) bits |= static_cast<std::uint64_t>(bitsOf(masks[i])) << (i * kLanes);
-  return bits;
-#endif
-}
-
-/// What the samples of a vector of pixels show, as visibility leaves it: four samples of kLanes / 4 pixels in a vector.
+/// What the samples of a vector of pixels show.
 template <std::size_t kGroups>
-class SampledIds {
- public:
-  HWY_INLINE SampledIds(const Tile& tile, int x, int y)
-      : at_(reinterpret_cast<const std::int32_t*>(&tile.ids[tile.offset(0, x, y)])),
-        plane_(tile.plane * kGroup) {
-    MI same[kGroup], shows[kGroup];
-    forEach(std::make_index_sequence<kGroup>(), [&](auto part) HWY_ATTR {
-      const VI ids = of(part, 0);
-      same[part] = hn::Eq(ids, hn::Shuffle0321(ids));
-      if constexpr (kGroups > 1) {
-        const VI others = of(part, 1);
-        same[part] =
-            hn::And(same[part], hn::And(hn::Eq(ids, others), hn::Eq(others, hn::Shuffle0321(others))));
-      }
-      shows[part] = hn::Gt(ids, hn::Set(I(), -1));
-    });
-    std::uint64_t uniform = bitsOf(same);
-    uniform &= uniform >> 1U;
-    uniform_ = everyFourthBit(uniform & uniform >> 2U);
-    seen_ = everyFourthBit(bitsOf(shows));
-  }
+struct SampledIds {
+  static constexpr std::size_t kSamples = kGroups * kGroup;
+  VI of[kSamples];
 
-  /// Bit i: all samples of pixel i show the same; its first sample shows something.
-  unsigned uniform() const { return uniform_; }
-  unsigned seen() const { return seen_; }
-
-  /// Four samples of the pixels [part · kLanes / 4, (part + 1) · kLanes / 4).
-  HWY_INLINE VI of(std::size_t part, std::size_t group) const {
-    return hn::Load(I(), at_ + group * plane_ + part * kLanes);
+  HWY_INLINE SampledIds(const Tile& tile, int x, int y) {
+    const auto* const at = reinterpret_cast<const std::int32_t*>(&tile.ids[tile.offset(0, x, y)]);
+    for (std::size_t g = 0; g < kGroups; ++g)
+      loadColumns(I(), at + g * tile.plane * kGroup, of[4 * g], of[4 * g + 1], of[4 * g + 2], of[4 * g + 3]);
   }
-  /// What pixels' first samples show.
-  HWY_INLINE VI first() const {
-    VI first, second, third, fourth;
-    hn::LoadInterleaved4(I(), at_, first, second, third, fourth);
-    return first;
+  /// Pixels all of whose samples show the same.
+  HWY_INLINE MI uniform() const {
+    MI same = hn::Eq(of[0], of[1]);
+    for (std::size_t s = 2; s < kSamples; ++s) same = hn::And(same, hn::Eq(of[0], of[s]));
+    return same;
   }
-
- private:
-  const std::int32_t* at_;
-  std::size_t plane_;
-  unsigned uniform_, seen_;
 };
 
 class Fragments {
  public:
   Fragments(Tile& tile, const Lighting& lighting)
-      : tile_(tile), context_(*tile.context), lighting_(lighting), samples_(context_.samples.size()) {
-    std::copy(context_.samples.begin(), context_.samples.end(), samplePlaces_);
-    samplePlaces_[kMaxSamples] = kOneSample[0];
-    for (SamplePosition& place : samplePlaces_)
-      place.x += tile.left * kSubpixels, place.y += tile.top * kSubpixels;
-  }
+      : tile_(tile), context_(*tile.context), lighting_(lighting), samples_(context_.samples.size()) {}
 
-  /// Adds pixels (bit i: the one at x + i, y of the tile), none of which has a complex material.
+  /// Adds the pixels `which` of the vector at x, y of the tile, none of which has a complex material.
   template <std::size_t kGroups>
-  HWY_NOINLINE void add(int x, int y, unsigned pixels) {
-    if (pixels_ + kLanes > kSize) finish();
-    const auto* const ids = reinterpret_cast<const std::int32_t*>(&tile_.ids[tile_.offset(0, x, y)]);
-    std::uint8_t* const row = context_.target.rgba +
-                              static_cast<std::size_t>(tile_.top + y) * context_.target.rgbaStride +
-                              4 * static_cast<std::size_t>(tile_.left + x);
-    for (unsigned left = pixels; left != 0; left &= left - 1) {
-      const int i = std::countr_zero(left);
-      places_[pixels_] = {x + i, y};
-      to_[pixels_] = row + 4 * i;
-      addPixel<kGroups>(ids + i * static_cast<int>(kGroup));
-      ++pixels_;
-    }
+  HWY_INLINE void add(int x, int y, MI which, const SampledIds<kGroups>& ids) {
+    const I d;
+    const std::size_t to = pixels_;
+    for (std::size_t s = 0; s < ids.kSamples; ++s)
+      hn::StoreU(hn::Compress(ids.of[s], which), d, shown_[s] + to);
+    const VI places = hn::Add(hn::ShiftLeft<kSubpixelBits>(hn::Iota(d, 0)),
+                              hn::Set(d, (x << kSubpixelBits) + (y << kRowShift)));
+    hn::StoreU(hn::Compress(places, which), d, place_ + to);
+    pixels_ = to + hn::CountTrue(d, which);
+    if (pixels_ > kPixels - kLanes) finish();
   }
 
-  /// Shades what is left and writes all pixels that were added.
-  void finish() {
-    flush();
-    tile_.clock.lap(tile_.statistics.shadingMs);
-    tile_.statistics.pixelsCovered += pixels_;
-    for (std::size_t i = 0; i < pixels_; i += kLanes) write(i);
-    tile_.clock.lap(tile_.statistics.resolveMs);
-    pixels_ = 0;
+  /// Shades and writes all pixels that were added.
+  HWY_NOINLINE void finish() {
+    if (samples_ == kGroup)
+      finishAll<kGroup>();
+    else
+      finishAll<kMaxSamples>();
   }
 
  private:
-  using I4 = hn::Rebind<std::int32_t, F4>;
-  using VI4 = hn::Vec<I4>;
-  using I2 = hn::Repartition<std::int64_t, F4>;
-  static constexpr std::size_t kSize = PointBatch::kSize;
-  // A fragment's tag: its pixel's number, its first sample, and how many samples show its triangle.
-  static constexpr int kSampleShift = 16, kCountShift = 20;
-  alignas(16) static constexpr std::int32_t kSampleTags[kGroup] = {0, 1 << kSampleShift, 2 << kSampleShift,
-                                                                   3 << kSampleShift};
+  static constexpr std::size_t kSize = PointBatch::kSize, kPixels = 256;
+  // A place in the tile: sub-pixels across, and down from this bit on. A fragment's tag has its sample's place, and above
+  // it how many samples show its triangle, which are less than eight.
+  static constexpr int kDownShift = 15, kRowShift = kDownShift + kSubpixelBits, kCountShift = 29;
 
-  // A pixel's fragments: for each triangle the first sample that shows it.
-  template <std::size_t kGroups>
-  HWY_INLINE void addPixel(const std::int32_t* at) {
-    const I4 d;
-    if (count_ + kGroups * kGroup > kSize) flush();
-    const VI4 tags = hn::Add(hn::Load(d, kSampleTags), hn::Set(d, static_cast<std::int32_t>(pixels_)));
-    const VI4 ids = hn::Load(d, at), turned1 = hn::Shuffle0321(ids), turned2 = hn::Shuffle1032(ids),
-              turned3 = hn::Shuffle2103(ids);
-    VI4 shown = hn::Set(d, 1);  // by how many samples of the pixel
-    const auto first = firstOf(ids, turned1, turned2, turned3, shown);
-    if constexpr (kGroups == 1) {
-      push(ids, hn::Add(tags, hn::ShiftLeft<kCountShift>(shown)), first);
-    } else {
-      const VI4 others = hn::Load(d, at + tile_.plane * kGroup);
-      const VI4 other1 = hn::Shuffle0321(others), other2 = hn::Shuffle1032(others),
-                other3 = hn::Shuffle2103(others);
-      VI4 othersShown = hn::Set(d, 1);
-      auto firstOther = firstOf(others, other1, other2, other3, othersShown);
-      for (const VI4 turned : {others, other1, other2, other3})
-        shown = hn::Sub(shown, hn::VecFromMask(d, hn::Eq(ids, turned)));
-      for (const VI4 turned : {ids, turned1, turned2, turned3})
-        firstOther = hn::AndNot(hn::Eq(others, turned), firstOther);
-      push(ids, hn::Add(tags, hn::ShiftLeft<kCountShift>(shown)), first);
-      const VI4 otherTags = hn::Add(tags, hn::Set(d, static_cast<std::int32_t>(kGroup << kSampleShift)));
-      push(others, hn::Add(otherTags, hn::ShiftLeft<kCountShift>(othersShown)), firstOther);
+  template <std::size_t kSamples>
+  HWY_INLINE void finishAll() {
+    for (std::size_t s = 0; s < kSamples; ++s) hn::StoreU(hn::Set(I(), -1), I(), shown_[s] + pixels_);
+    std::size_t written = 0;
+    for (std::size_t i = 0; i < pixels_; i += kLanes) {
+      // Not full, so that what is expanded can be loaded as vectors.
+      if (count_ + (kSamples + 1) * kLanes > kSize) {
+        write<kSamples>(written, i);
+        written = i;
+      }
+      list<kSamples>(i);
     }
+    write<kSamples>(written, pixels_);
+    tile_.statistics.pixelsCovered += pixels_;
+    pixels_ = 0;
   }
 
-  // Which of four samples show something that none before them does; and how many show the same is added to `shown`.
-  HWY_INLINE static hn::Mask<I4> firstOf(VI4 ids, VI4 turned1, VI4 turned2, VI4 turned3, VI4& shown) {
-    // Rotated by n, the last n samples of a pixel meet its first n.
-    alignas(16) static constexpr std::int32_t kLast[3][4] = {{0, 0, 0, -1}, {0, 0, -1, -1}, {0, -1, -1, -1}};
-    const I4 d;
-    const VI4 same1 = hn::VecFromMask(d, hn::Eq(ids, turned1)),
-              same2 = hn::VecFromMask(d, hn::Eq(ids, turned2)),
-              same3 = hn::VecFromMask(d, hn::Eq(ids, turned3));
-    shown = hn::Sub(shown, hn::Add(hn::Add(same1, same2), same3));
-    const VI4 later =
-        hn::Or(hn::Or(hn::And(same1, hn::Load(d, kLast[0])), hn::And(same2, hn::Load(d, kLast[1]))),
-               hn::And(same3, hn::Load(d, kLast[2])));
-    return hn::Gt(hn::Or(later, ids), hn::Set(d, -1));
+  // The fragments of the pixels [i, i + kLanes), and how many samples of each show something.
+  template <std::size_t kSamples>
+  HWY_INLINE void list(std::size_t i) {
+    const I d;
+    const VI one = hn::Set(d, 1 << kCountShift), place = hn::Load(d, place_ + i);
+    VI shown[kSamples], tag[kSamples], covered = hn::Zero(d);
+    MI first[kSamples];  // pixels no sample of which before shows the same
+    for (std::size_t s = 0; s < kSamples; ++s) {
+      const SamplePosition at = context_.samples[s];
+      shown[s] = hn::Load(d, shown_[s] + i);
+      tag[s] = hn::Add(place, hn::Set(d, at.x + (at.y << kDownShift) + (1 << kCountShift)));
+      first[s] = hn::Gt(shown[s], hn::Set(d, -1));
+      covered = hn::IfThenElse(first[s], hn::Add(covered, hn::Set(d, 1)), covered);
+    }
+    for (std::size_t s = 1; s < kSamples; ++s)
+      for (std::size_t before = 0; before < s; ++before) {
+        const MI same = hn::Eq(shown[before], shown[s]);
+        tag[before] = hn::IfThenElse(same, hn::Add(tag[before], one), tag[before]);
+        first[s] = hn::AndNot(same, first[s]);
+      }
+    hn::Store(covered, d, covered_ + i);
+    std::size_t count = count_;
+    begin_[i / kLanes] = count;
+    for (std::size_t s = 0; s < kSamples; ++s) {
+      hn::StoreU(hn::Compress(shown[s], first[s]), d, listedId_ + count);
+      hn::StoreU(hn::Compress(tag[s], first[s]), d, listedTag_ + count);
+      first_[s][i / kLanes] = bitsOf(first[s]);
+      count += hn::CountTrue(d, first[s]);
+    }
+    count_ = count;
   }
 
-  HWY_INLINE void push(VI4 ids, VI4 tags, hn::Mask<I4> which) {
-    const I4 d;
-    const std::size_t count = hn::CountTrue(d, which);
-    if (soleMaterial_ != nullptr) {
-      hn::StoreU(hn::Compress(ids, which), d, id_ + count_);
-      hn::StoreU(hn::Compress(tags, which), d, tag_ + count_);
-      material_ = soleMaterial_;
-      count_ += count;
-      return;
-    }
-    // One batch, one material.
-    alignas(16) std::int32_t id[kGroup], tag[kGroup];
-    hn::Store(hn::Compress(ids, which), d, id);
-    hn::Store(hn::Compress(tags, which), d, tag);
-    for (std::size_t i = 0; i < count; ++i) {
-      const Material* material = tile_.surfaceOf(tile_.records[static_cast<std::size_t>(id[i])]).material;
-      if (material != material_) flush();
-      material_ = material;
-      id_[count_] = id[i], tag_[count_] = tag[i];
-      ++count_;
-    }
-  }
-
-  void flush() {
+  // Shades the fragments listed and writes their pixels [from, to).
+  template <std::size_t kSamples>
+  HWY_INLINE void write(std::size_t from, std::size_t to) {
     if (count_ == 0) return;
-    const std::size_t padded = (count_ + kLanes - 1) / kLanes * kLanes;
-    for (std::size_t i = count_; i < padded; ++i) id_[i] = id_[0], tag_[i] = tag_[0];
-    interpolate(padded);
-    points_.count = padded;
-    setBases();
-    shadePoints(points_, *material_, lighting_);
-    addUp(padded);
+    if (tile_.hasSoleMaterial())
+      shadeAll();
+    else
+      shadeByMaterial();
     tile_.statistics.pixelsShaded += count_;
     count_ = 0;
+    tile_.clock.lap(tile_.statistics.shadingMs);
+    for (std::size_t i = from; i < to; i += kLanes) writeVector<kSamples>(i);
+    tile_.clock.lap(tile_.statistics.resolveMs);
   }
 
-  // Adds colours to the sums of their pixels. Fragments of a pixel come in the order of their first samples.
-  HWY_INLINE void addUp(std::size_t padded) {
-    const I d;
-    const F f;
-    const F4 f4;
-    const VF all = hn::Set(f, static_cast<float>(samples_));
-    alignas(64) float parts[kLanes][4];
-    for (std::size_t i = 0; i < padded; i += kLanes) {
-      const VF count = hn::ConvertTo(f, hn::ShiftRight<kCountShift>(hn::Load(d, tag_ + i)));
-      const VF weight = hn::Div(count, all);
-      const auto part = [&](int k) HWY_ATTR { return hn::Mul(hn::Load(f, points_.color[k] + i), weight); };
-      hn::StoreInterleaved4(part(0), part(1), part(2), count, f, parts[0]);
-      for (std::size_t k = 0; k < kLanes && i + k < count_; ++k) {
-        float* const sum = sum_[tag_[i + k] & ((1 << kSampleShift) - 1)];
-        hn::Store(hn::Add(hn::Load(f4, sum), hn::Load(f4, parts[k])), f4, sum);
+  void shadeAll() {
+    material_ = tile_.plainMaterial != nullptr ? tile_.plainMaterial : tile_.texturedMaterial;
+    shade(listedId_, listedTag_, count_);
+    for (std::size_t k = 0; k < 3; ++k) parts_[k] = points_.color[k];
+  }
+
+  // One material after the other.
+  void shadeByMaterial() {
+    const Material* materials[kSize];
+    for (std::size_t i = 0; i < count_; ++i)
+      materials[i] = tile_.surfaceOf(tile_.records[static_cast<std::size_t>(listedId_[i])]).material;
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (materials[i] == nullptr) continue;
+      material_ = materials[i];
+      std::size_t count = 0, of[kSize];
+      for (std::size_t k = i; k < count_; ++k) {
+        if (materials[k] != material_) continue;
+        id_[count] = listedId_[k], tag_[count] = listedTag_[k];
+        of[count++] = k;
+        materials[k] = nullptr;
       }
+      shade(id_, tag_, count);
+      for (std::size_t k = 0; k < 3; ++k)
+        for (std::size_t n = 0; n < count; ++n) colors_[k][of[n]] = points_.color[k][n];
     }
+    for (std::size_t k = 0; k < 3; ++k) parts_[k] = colors_[k];
   }
 
-  // Where fragments are shaded, and their planes there.
-  HWY_INLINE void interpolate(std::size_t padded) {
+  // What fragments of one material add to their pixels.
+  void shade(std::int32_t* ids, std::int32_t* tags, std::size_t count) {
+    const std::size_t padded = (count + kLanes - 1) / kLanes * kLanes;
+    for (std::size_t i = count; i < padded; ++i) ids[i] = ids[0], tags[i] = tags[0];
+    points_.count = padded;
+    for (std::size_t i = 0; i < padded; i += kLanes) interpolate(ids + i, tags + i, i);
+    setBases(ids, count);
+    shadePoints(points_, *material_, lighting_);
+    for (std::size_t i = 0; i < padded; i += kLanes) weigh(tags + i, i);
+  }
+
+  HWY_INLINE void weigh(const std::int32_t* tags, std::size_t i) {
+    const F f;
+    const hn::Rebind<std::uint32_t, F> u;
+    const auto count = hn::ShiftRight<kCountShift>(hn::BitCast(u, hn::Load(I(), tags)));
+    const VF weight =
+        hn::Div(hn::ConvertTo(f, hn::BitCast(I(), count)), hn::Set(f, static_cast<float>(samples_)));
+    for (float* const color : points_.color) hn::Store(hn::Mul(hn::Load(f, color + i), weight), f, color + i);
+  }
+
+  // Where a vector of fragments is shaded, and their planes there.
+  HWY_INLINE void interpolate(const std::int32_t* ids, const std::int32_t* tags, std::size_t i) {
     const F f;
     const I d;
-    for (std::size_t i = 0; i < padded; ++i) interpolateOne(i);
-    // Not sooner: what was just stored in parts cannot be loaded as a whole until it has left the processor's queue.
-    for (std::size_t i = 0; i < padded; i += kLanes) {
-      VF nx, ny, nz, depth;
-      hn::LoadInterleaved4(f, planes_[i], nx, ny, nz, depth);
-      hn::Store(nx, f, points_.normal[0] + i);
-      hn::Store(ny, f, points_.normal[1] + i);
-      hn::Store(nz, f, points_.normal[2] + i);
-      hn::Store(depth, f, points_.depth + i);
-      VI x, y;
-      hn::LoadInterleaved2(d, &at_[i].x, x, y);
-      hn::Store(lighting_.rayX(x), f, points_.rayX + i);
-      hn::Store(lighting_.rayY(y), f, points_.rayY + i);
-    }
+    const VI tag = hn::Load(d, tags);
+    const VI sampleX = hn::And(tag, hn::Set(d, (1 << kDownShift) - 1));
+    const VI sampleY =
+        hn::And(hn::ShiftRight<kDownShift>(tag), hn::Set(d, (1 << (kCountShift - kDownShift)) - 1));
+    const MI central =
+        coversCenters(ids, hn::ShiftRight<kSubpixelBits>(sampleX), hn::ShiftRight<kSubpixelBits>(sampleY));
+    const auto placed = [&](VI sample, int corner) HWY_ATTR {
+      const VI center = hn::Or(hn::And(sample, hn::Set(d, -kSubpixels)), hn::Set(d, kOneSample[0].x));
+      return hn::Add(hn::IfThenElse(central, center, sample), hn::Set(d, corner * kSubpixels));
+    };
+    const VI x = placed(sampleX, tile_.left), y = placed(sampleY, tile_.top);
+    hn::Store(x, d, atX_ + i);
+    hn::Store(y, d, atY_ + i);
+    hn::Store(lighting_.rayX(x), f, points_.rayX + i);
+    hn::Store(lighting_.rayY(y), f, points_.rayY + i);
+    setPlanes(ids, x, y, i);
   }
 
-  // x, y, x, y
-  HWY_INLINE static VI4 pairOf(SamplePosition p) {
-    return hn::BitCast(I4(), hn::Set(I2(), std::bit_cast<std::int64_t>(p)));
+  // shadingPoint()'s condition: whether the triangles of fragments cover the centres of their pixels.
+  HWY_INLINE MI coversCenters(const std::int32_t* ids, VI x, VI y) const {
+    const I d;
+    const CenterEdges* const all = tile_.centerEdges.data();
+    VI rows[4], edge0, edge1, edge2, unused;
+    forEach(std::make_index_sequence<4>(), [&](auto j) HWY_ATTR {
+      const auto load = [&](auto member) HWY_ATTR {
+        return loadEveryFourth(d, j, [&](std::size_t lane) { return all[ids[lane]].*member; });
+      };
+      const VI across = hn::Mul(load(&CenterEdges::stepX), hn::Broadcast<j>(x)),
+               down = hn::Mul(load(&CenterEdges::stepY), hn::Broadcast<j>(y));
+      rows[j] = hn::Add(load(&CenterEdges::value), hn::Add(across, down));
+    });
+    transpose(d, rows, edge0, edge1, edge2, unused);
+    return hn::Gt(hn::Or(hn::Or(edge0, edge1), edge2), hn::Set(d, -1));
   }
 
-  HWY_INLINE void interpolateOne(std::size_t i) {
-    const F4 f;
-    const I4 d;
-    const auto tag = static_cast<std::uint32_t>(tag_[i]);
-    const auto id = static_cast<std::size_t>(id_[i]);
-    const VI4 pixel = pairOf(places_[tag & ((1U << kSampleShift) - 1U)]);
-    // shadingPoint(): the centre if the triangle covers it, else the sample.
-    const CenterEdges& e = tile_.centerEdges[id];
-    const VI4 across = hn::Mul(hn::Load(d, e.stepX), hn::Broadcast<0>(pixel)),
-              down = hn::Mul(hn::Load(d, e.stepY), hn::Broadcast<1>(pixel));
-    const VI4 values = hn::Add(hn::Load(d, e.value), hn::Add(across, down));
-    const bool central = hn::AllTrue(d, hn::Gt(values, hn::Set(d, -1)));
-    const std::size_t sample = central ? kMaxSamples : (tag >> kSampleShift) & (kMaxSamples - 1);
-    const VI4 at = hn::Add(hn::ShiftLeft<kSubpixelBits>(pixel), pairOf(samplePlaces_[sample]));
-    at_[i] = std::bit_cast<SamplePosition>(hn::GetLane(hn::BitCast(I2(), at)));
-    const Record& r = tile_.records[id];
-    const auto from = hn::ConvertTo(f, hn::Sub(at, pairOf({r.x0, r.y0})));
-    const auto start = hn::Add(hn::Load(f, r.origin), hn::Mul(hn::Load(f, r.slopeY), hn::Broadcast<1>(from)));
-    hn::Store(hn::Add(start, hn::Mul(hn::Load(f, r.slopeX), hn::Broadcast<0>(from))), f, planes_[i]);
+  // Record::value() of all planes.
+  HWY_INLINE void setPlanes(const std::int32_t* ids, VI x, VI y, std::size_t i) {
+    const F f;
+    const I d;
+    const Record* const records = tile_.records.data();
+    VI anchors[4], x0, y0, unused[2];
+    forEach(std::make_index_sequence<4>(), [&](auto j) HWY_ATTR {
+      anchors[j] = loadEveryFourth(d, j, [&](std::size_t lane) { return &records[ids[lane]].x0; });
+    });
+    transpose(d, anchors, x0, y0, unused[0], unused[1]);
+    const VF dx = hn::ConvertTo(f, hn::Sub(x, x0)), dy = hn::ConvertTo(f, hn::Sub(y, y0));
+    VF rows[4], nx, ny, nz, depth;
+    forEach(std::make_index_sequence<4>(), [&](auto j) HWY_ATTR {
+      const auto load = [&](auto member) HWY_ATTR {
+        return loadEveryFourth(f, j, [&](std::size_t lane) { return records[ids[lane]].*member; });
+      };
+      const VF start = hn::Add(load(&Record::origin), hn::Mul(load(&Record::slopeY), hn::Broadcast<j>(dy)));
+      rows[j] = hn::Add(start, hn::Mul(load(&Record::slopeX), hn::Broadcast<j>(dx)));
+    });
+    transpose(f, rows, nx, ny, nz, depth);
+    hn::Store(nx, f, points_.normal[0] + i);
+    hn::Store(ny, f, points_.normal[1] + i);
+    hn::Store(nz, f, points_.normal[2] + i);
+    hn::Store(depth, f, points_.depth + i);
   }
 
   // Base colours, with vertex colours and texels where the material or a mesh has them.
-  void setBases() {
-    if (soleMaterial_ != nullptr) {
-      if (soleMaterial_ == tile_.plainMaterial) return setPlainBase(*material_, points_);
-      for (std::size_t i = 0; i < points_.count; i += kLanes) setTexcoords(i);
+  void setBases(const std::int32_t* ids, std::size_t count) {
+    if (tile_.hasSoleMaterial()) {
+      if (tile_.plainMaterial != nullptr) return setPlainBase(*material_, points_);
+      for (std::size_t i = 0; i < points_.count; i += kLanes) setTexcoords(ids + i, i);
       return addTexels<false>(*material_, texture_, points_);
     }
     bool needed = material_->baseColorTexture != nullptr;
-    for (std::size_t i = 0; i < count_; ++i)
-      needed |= tile_.surfaceOf(tile_.records[static_cast<std::size_t>(id_[i])]).hasColors;
+    for (std::size_t i = 0; i < count; ++i)
+      needed |= tile_.surfaceOf(tile_.records[static_cast<std::size_t>(ids[i])]).hasColors;
     if (!needed) return setPlainBase(*material_, points_);
     for (std::size_t i = 0; i < points_.count; i += kLanes) {
       Color vertex;
       FootprintVector footprint;
-      interpolate(i, vertex, footprint);
+      interpolate(ids + i, i, vertex, footprint);
       setBase(*material_, vertex, points_, i);
       if (material_->baseColorTexture != nullptr)
         storeFootprint(material_->baseColorTexture->data(), footprint, texture_, i);
@@ -301,25 +274,24 @@ class Fragments {
     if (material_->baseColorTexture != nullptr) addTexels<true>(*material_, texture_, points_);
   }
 
-  HWY_INLINE void setTexcoords(std::size_t i) {
+  HWY_INLINE void setTexcoords(const std::int32_t* ids, std::size_t i) {
     const F f;
     const I d;
     TexcoordVector texcoords;
     for (std::size_t k = 0; k < kLanes; ++k)
-      texcoords.set(tile_.texturePlanes[static_cast<std::size_t>(id_[i + k])], lanesOf(1U << k));
-    VI x, y;
-    hn::LoadInterleaved2(d, &at_[i].x, x, y);
+      texcoords.set(tile_.texturePlanes[static_cast<std::size_t>(ids[k])], lanesOf(1U << k));
     const VF one = hn::Set(f, 1.0F), q = hn::Load(f, points_.depth + i);
-    texcoords.store(material_->baseColorTexture->data(), x, y,
+    texcoords.store(material_->baseColorTexture->data(), hn::Load(d, atX_ + i), hn::Load(d, atY_ + i),
                     context_.map.perspective ? hn::Div(one, q) : one, texture_, i);
   }
 
-  void interpolate(std::size_t first, Color& vertex, FootprintVector& footprint) const {
+  void interpolate(const std::int32_t* ids, std::size_t first, Color& vertex,
+                   FootprintVector& footprint) const {
     const F f;
     alignas(64) float v[9][kLanes] = {};
     for (std::size_t i = 0; i < kLanes; ++i) {
-      Record& record = tile_.records[static_cast<std::size_t>(id_[first + i])];
-      const PointAttributes a = attributesAt(tile_, record, at_[first + i]);
+      Record& record = tile_.records[static_cast<std::size_t>(ids[i])];
+      const PointAttributes a = attributesAt(tile_, record, {atX_[first + i], atY_[first + i]});
       const bool colored = tile_.surfaceOf(record).hasColors;
       for (int k = 0; k < 3; ++k) v[k][i] = colored ? a.color[k] : 1.0F;
       const float texcoords[6] = {a.footprint.u,  a.footprint.v,  a.footprint.ux,
@@ -332,52 +304,66 @@ class Fragments {
   }
 
   // Shader::writePixel and writePremultiplied.
-  HWY_INLINE void write(std::size_t i) {
+  template <std::size_t kSamples>
+  HWY_INLINE void writeVector(std::size_t i) {
     const I d;
     const F f;
+    VF sum[3] = {hn::Zero(f), hn::Zero(f), hn::Zero(f)};
+    std::size_t part = begin_[i / kLanes];
+    for (std::size_t s = 0; s < kSamples; ++s) {
+      const unsigned lanes = first_[s][i / kLanes];
+      for (std::size_t k = 0; k < 3; ++k) sum[k] = hn::Add(sum[k], expanded(parts_[k] + part, lanes));
+      part += static_cast<std::size_t>(std::popcount(lanes));
+    }
     const glm::vec4& b = context_.frame.background;
-    VF red, green, blue, count;
-    hn::LoadInterleaved4(f, sum_[i], red, green, blue, count);
-    const VF all = hn::Set(f, static_cast<float>(samples_));
-    const VF under = hn::Mul(hn::Set(f, b.w), hn::Div(hn::Sub(all, count), all));
-    const VF alpha = hn::Add(hn::Div(count, all), under);
+    const VF all = hn::Set(f, static_cast<float>(kSamples)),
+             covered = hn::ConvertTo(f, hn::Load(d, covered_ + i));
+    const VF under = hn::Mul(hn::Set(f, b.w), hn::Div(hn::Sub(all, covered), all));
+    const VF alpha = hn::Add(hn::Div(covered, all), under);
     const VF scale = hn::IfThenElseZero(hn::Gt(alpha, hn::Zero(f)), hn::Div(hn::Set(f, 1.0F), alpha));
-    const auto channel = [&](VF sum, float background) HWY_ATTR {
-      return hn::Mul(hn::Add(sum, hn::Mul(hn::Set(f, background), under)), scale);
+    const auto channel = [&](VF total, float background) HWY_ATTR {
+      return hn::Mul(hn::Add(total, hn::Mul(hn::Set(f, background), under)), scale);
     };
     alignas(64) std::int32_t pixels[kLanes];
-    hn::Store(packedOf({channel(red, b.x), channel(green, b.y), channel(blue, b.z)}, byteOf(alpha),
+    hn::Store(packedOf({channel(sum[0], b.x), channel(sum[1], b.y), channel(sum[2], b.z)}, byteOf(alpha),
                        context_.frame.encoding),
               d, pixels);
-    for (std::size_t k = 0; k < kLanes && i + k < pixels_; ++k) {
-      std::copy_n(reinterpret_cast<const std::uint8_t*>(pixels + k), 4, to_[i + k]);
+    const std::size_t stride = context_.target.rgbaStride, count = std::min(kLanes, pixels_ - i);
+    std::uint8_t* const corner = context_.target.rgba + static_cast<std::size_t>(tile_.top) * stride +
+                                 4 * static_cast<std::size_t>(tile_.left);
+    for (std::size_t k = 0; k < count; ++k) {
+      const auto place = static_cast<std::uint32_t>(place_[i + k]);
+      const std::size_t x = (place & ((1U << kDownShift) - 1U)) >> kSubpixelBits, y = place >> kRowShift;
+      std::memcpy(corner + y * stride + 4 * x, pixels + k, 4);
     }
-    for (std::size_t k = 0; k < kLanes; ++k) hn::Store(hn::Zero(F4()), F4(), sum_[i + k]);
   }
 
   Tile& tile_;
   const FrameContext& context_;
   const Lighting& lighting_;
   std::size_t samples_;
-  SamplePosition
-      samplePlaces_[kMaxSamples + 1];  // in the tile's first pixel: of the samples, and of the centre
 
-  // Fragments waiting to be shaded, all of one material.
-  const Material* const soleMaterial_ =
-      tile_.plainMaterial != nullptr ? tile_.plainMaterial : tile_.texturedMaterial;
-  const Material* material_ = nullptr;
+  // Pixels that wait: their places and what their samples show.
+  std::size_t pixels_ = 0;
+  alignas(64) std::int32_t place_[kPixels], shown_[kMaxSamples][kPixels + kLanes];
+  // Of vectors of them: how many samples show something, where their fragments begin, and for each sample the pixels that
+  // have one there.
+  alignas(64) std::int32_t covered_[kPixels];
+  std::size_t begin_[kPixels / kLanes];
+  unsigned first_[kMaxSamples][kPixels / kLanes];
+
+  // Fragments of those that are being shaded.
   std::size_t count_ = 0;
-  alignas(64) std::int32_t id_[kSize + kLanes], tag_[kSize + kLanes];
-  alignas(64) SamplePosition at_[kSize];  // where they are shaded, in the window
-  alignas(64) float planes_[kSize][4];
+  alignas(64) std::int32_t listedId_[kSize + kLanes], listedTag_[kSize + kLanes];
+  const float* parts_[3];  // what they add to their pixels
+
+  // Fragments of one material.
+  const Material* material_ = nullptr;
+  alignas(64) std::int32_t id_[kSize], tag_[kSize];
+  alignas(64) std::int32_t atX_[kSize], atY_[kSize];  // where they are shaded, in the window
+  alignas(64) float colors_[3][kSize];
   PointBatch points_;
   TextureBatch texture_;
-
-  // Pixels, and the sums of their fragments so far: colours and how many samples they show.
-  std::size_t pixels_ = 0;
-  SamplePosition places_[kSize];  // in the tile
-  std::uint8_t* to_[kSize];
-  alignas(64) float sum_[kSize][4] = {};
 };
 #endif
 

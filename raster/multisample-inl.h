@@ -20,19 +20,6 @@ namespace HWY_NAMESPACE {
 /// Pixels of a vector of samples.
 inline constexpr int kPixels = static_cast<int>(kLanes / kGroup);
 
-/// The lanes of all pixels that have some lane in the mask.
-HWY_INLINE MI wholePixels(MI lanes) {
-#if HWY_TARGET <= HWY_AVX3
-  unsigned bits = bitsOf(lanes);
-  bits |= bits >> 1U;
-  return lanesOf(((bits | bits >> 2U) & 0x1111U) * 15U);
-#else
-  VI v = hn::VecFromMask(I(), lanes);
-  v = hn::Or(v, hn::Shuffle2301(v));
-  return hn::MaskFromVec(hn::Or(v, hn::Shuffle1032(v)));
-#endif
-}
-
 class Multisample {
  public:
   explicit Multisample(Tile& tile) : tile_(tile), samples_(tile.context->samples) {
@@ -149,7 +136,7 @@ class Multisample {
       const VF across = hn::Mul(slope, hn::ConvertTo(f, hn::Add(x, pixelCenter)));
       std::size_t o = tile_.offset(0, x0 + column * kPixels, y0 + first);
       for (int row = first; row <= last; ++row, o += kStride) {
-        MI any = hn::FirstN(d, 0);
+        MI wonHere[kGroups];
         forEach(groups, [&](auto g) HWY_ATTR {
           float* const depth = depths + o + g * plane;
           std::uint32_t* const id = ids + o + g * plane;
@@ -161,12 +148,13 @@ class Multisample {
           if (HWY_UNLIKELY(!hn::AllFalse(d, ties))) wins = settleTies(tile_, record, id, wins, ties);
           storeWhere(z, hn::RebindMask(f, wins), f, depth);
           storeWhere(number, wins, d, reinterpret_cast<std::int32_t*>(id));
-          any = hn::Or(any, wins);
+          won = hn::Or(won, wins);
+          wonHere[g] = wins;
           for (int k = 0; k < 3; ++k) e[g][k] = hn::Add(e[g][k], step[k]);
         });
         const VF values = hn::Add(hn::LoadDup128(f, starts_ + row * static_cast<int>(kGroup)), across);
-        storeWhere(values, hn::RebindMask(f, wholePixels(any)), f, centers + o);
-        won = hn::Or(won, any);
+        // Whole where all samples of a pixel were won: no others are going to be read.
+        storeWhere(values, hn::RebindMask(f, wonHere[0]), f, centers + o);
       }
     }
     return !hn::AllFalse(d, won);

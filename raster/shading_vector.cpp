@@ -107,8 +107,7 @@ class Shading {
     const MI whole = tile_.overlaid ? hn::And(inside, notBlended(x, y)) : inside;
     const MI nothing = hn::Eq(ids, hn::Set(d, -1));
     if (!hn::AllFalse(d, hn::And(nothing, whole))) store(hn::Set(d, background_), x, y);
-    MI left =
-        hn::Or(hn::AndNot(whole, inside), pushSeen(x, y, hn::AndNot(nothing, whole), [&] { return ids; }));
+    MI left = hn::Or(hn::AndNot(whole, inside), pushSeen(x, y, hn::AndNot(nothing, whole), ids));
     for (unsigned bits = bitsOf(left); bits != 0; bits &= bits - 1)
       shadePixelScalar(tile_, x + std::countr_zero(bits), y);
   }
@@ -118,29 +117,28 @@ class Shading {
   HWY_INLINE void sampledBlock(int x, int y) {
     const I d;
     const SampledIds<kGroups> ids(tile_, x, y);
-    const unsigned inside = bitsOf(hn::FirstN(d, static_cast<std::size_t>(tile_.width - x)));
-    unsigned whole = inside & ids.uniform();  // pixels all of whose samples show the same
-    if (tile_.overlaid) whole &= bitsOf(notBlended(x, y));
-    const unsigned seen = whole & ids.seen();
-    if (seen != whole) store(hn::Set(d, background_), x, y);
-    unsigned left = inside & ~whole;
-    if (seen != 0) left |= bitsOf(pushSeen(x, y, lanesOf(seen), [&] { return ids.first(); }));
-    if (left == 0) return;
-    if (tile_.overlaid || !tile_.hasSoleMaterial()) left = leaveSome(left, x, y);
-    if (left != 0) fragments_.add<kGroups>(x, y, left);
+    const MI inside = hn::FirstN(d, static_cast<std::size_t>(tile_.width - x));
+    MI whole = hn::And(inside, ids.uniform());
+    if (tile_.overlaid) whole = hn::And(whole, notBlended(x, y));
+    const MI nothing = hn::And(whole, hn::Eq(ids.of[0], hn::Set(d, -1)));
+    if (!hn::AllFalse(d, nothing)) store(hn::Set(d, background_), x, y);
+    MI left = hn::AndNot(whole, inside);
+    left = hn::Or(left, pushSeen(x, y, hn::AndNot(nothing, whole), ids.of[0]));
+    if (hn::AllFalse(d, left)) return;
+    if (tile_.overlaid || !tile_.hasSoleMaterial()) left = lanesOf(leaveSome(bitsOf(left), x, y));
+    if (!hn::AllFalse(d, left)) fragments_.add<kGroups>(x, y, left, ids);
   }
 
-  // Adds pixels whose samples show one triangle each, by `ids()`, to the points; returns what is left to others.
-  template <class Ids>
-  HWY_INLINE MI pushSeen(int x, int y, MI seen, const Ids& ids) {
+  // Adds pixels whose samples show one triangle each to the points; returns what is left to others.
+  HWY_INLINE MI pushSeen(int x, int y, MI seen, VI ids) {
     const MI none = hn::FirstN(I(), 0);
     if (hn::AllFalse(I(), seen)) return none;
     if (tile_.plainMaterial != nullptr)
       push(x, y, seen);
     else if (tile_.texturedMaterial != nullptr)
-      pushTextured(x, y, ids(), seen);
+      pushTextured(x, y, ids, seen);
     else
-      return pushByMaterial(x, y, ids(), seen);
+      return pushByMaterial(x, y, ids, seen);
     return none;
   }
 
@@ -211,7 +209,7 @@ class Shading {
     hn::Store(hn::Set(f, rayY_), f, points_.rayY + n);
     VF nx, ny, nz, depth;
     if (samples_ > 1) {
-      hn::LoadInterleaved4(f, &tile_.centers[4 * o], nx, ny, nz, depth);
+      loadColumns(f, &tile_.centers[4 * o], nx, ny, nz, depth);
     } else {
       nx = hn::LoadU(f, tile_.normal[0].data() + o), ny = hn::LoadU(f, tile_.normal[1].data() + o);
       nz = hn::LoadU(f, tile_.normal[2].data() + o), depth = hn::LoadU(f, tile_.depth.data() + o);

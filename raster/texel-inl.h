@@ -76,27 +76,17 @@ struct TexelPairs {
   VI redGreen, blueAlpha, nextRedGreen, nextBlueAlpha;
 };
 
-/// The texel and its right neighbour of the lanes 0, 4, 8 … side by side.
-template <class D>
-HWY_INLINE hn::Vec<D> loadEveryFourth(D d, const std::uint16_t* texels, const std::int32_t* at) {
-  if constexpr (hn::MaxLanes(D()) == 4) {
-    return hn::LoadU(d, reinterpret_cast<const std::int32_t*>(texels + 4 * static_cast<std::ptrdiff_t>(*at)));
-  } else {
-    const hn::Half<D> half;
-    const std::int32_t* upper = at + hn::MaxLanes(half);
-    return hn::Combine(d, loadEveryFourth(half, texels, upper), loadEveryFourth(half, texels, at));
-  }
-}
-
 /// One load of 128 bits for each lane; four lanes at a time are turned into numbers of their own.
 HWY_INLINE TexelPairs fetchPairs(const std::uint16_t* texels, const std::int32_t* at) {
   const I d;
-  const VI r0 = loadEveryFourth(d, texels, at), r1 = loadEveryFourth(d, texels, at + 1);
-  const VI r2 = loadEveryFourth(d, texels, at + 2), r3 = loadEveryFourth(d, texels, at + 3);
-  const VI low02 = hn::InterleaveLower(d, r0, r2), low13 = hn::InterleaveLower(d, r1, r3);
-  const VI high02 = hn::InterleaveUpper(d, r0, r2), high13 = hn::InterleaveUpper(d, r1, r3);
-  return {hn::InterleaveLower(d, low02, low13), hn::InterleaveUpper(d, low02, low13),
-          hn::InterleaveLower(d, high02, high13), hn::InterleaveUpper(d, high02, high13)};
+  const auto pair = [&](std::size_t lane) {
+    return reinterpret_cast<const std::int32_t*>(texels + 4 * static_cast<std::ptrdiff_t>(at[lane]));
+  };
+  const VI rows[4] = {loadEveryFourth(d, 0, pair), loadEveryFourth(d, 1, pair), loadEveryFourth(d, 2, pair),
+                      loadEveryFourth(d, 3, pair)};
+  TexelPairs p;
+  transpose(d, rows, p.redGreen, p.blueAlpha, p.nextRedGreen, p.nextBlueAlpha);
+  return p;
 }
 
 /// Between a texel and the next, of one row.

@@ -6,6 +6,7 @@
 #define LIMN_RASTER_VECTOR_INL_H_
 #endif
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -67,6 +68,62 @@ HWY_INLINE MI lanesOf(unsigned lanes) {
 #else
   const std::uint8_t bits[8] = {static_cast<std::uint8_t>(lanes), static_cast<std::uint8_t>(lanes >> 8U)};
   return hn::LoadMaskBits(I(), bits);
+#endif
+}
+
+/// Of four vectors' numbers at `from`, those at 0, 4, 8 …, at 1, 5, 9 …, and so on.
+template <class D, class V>
+HWY_INLINE void loadColumns(D d, const hn::TFromD<D>* from, V& c0, V& c1, V& c2, V& c3) {
+#if HWY_TARGET <= HWY_AVX3
+  // Half of the shuffles of LoadInterleaved4.
+  alignas(64) static constexpr std::int32_t kFirst[16] = {0, 4, 8, 12, 16, 20, 24, 28,
+                                                          1, 5, 9, 13, 17, 21, 25, 29},
+                                            kLast[16] = {2, 6, 10, 14, 18, 22, 26, 30,
+                                                         3, 7, 11, 15, 19, 23, 27, 31};
+  const __m512i first = _mm512_load_si512(kFirst), last = _mm512_load_si512(kLast);
+  const auto pick = [&](std::size_t i, __m512i which) HWY_ATTR {
+    return hn::BitCast(d, VI{_mm512_permutex2var_epi32(_mm512_load_si512(from + i), which,
+                                                       _mm512_load_si512(from + i + kLanes))});
+  };
+  const V low01 = pick(0, first), high01 = pick(2 * kLanes, first);
+  const V low23 = pick(0, last), high23 = pick(2 * kLanes, last);
+  c0 = hn::ConcatLowerLower(d, high01, low01), c1 = hn::ConcatUpperUpper(d, high01, low01);
+  c2 = hn::ConcatLowerLower(d, high23, low23), c3 = hn::ConcatUpperUpper(d, high23, low23);
+#else
+  hn::LoadInterleaved4(d, from, c0, c1, c2, c3);
+#endif
+}
+
+/// The 128 bits at(lane), at(lane + 4), at(lane + 8) … side by side.
+template <class D, class At>
+HWY_INLINE hn::Vec<D> loadEveryFourth(D d, std::size_t lane, const At& at) {
+  if constexpr (hn::MaxLanes(D()) == 4) {
+    return hn::LoadU(d, at(lane));
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, loadEveryFourth(half, lane + hn::MaxLanes(half), at),
+                       loadEveryFourth(half, lane, at));
+  }
+}
+
+/// The columns of rows of four numbers each, loaded by loadEveryFourth() from lanes 0, 1, 2, 3 on.
+template <class D, class V>
+HWY_INLINE void transpose(D d, const V (&rows)[4], V& c0, V& c1, V& c2, V& c3) {
+  const V low02 = hn::InterleaveLower(d, rows[0], rows[2]), low13 = hn::InterleaveLower(d, rows[1], rows[3]);
+  const V high02 = hn::InterleaveUpper(d, rows[0], rows[2]),
+          high13 = hn::InterleaveUpper(d, rows[1], rows[3]);
+  c0 = hn::InterleaveLower(d, low02, low13), c1 = hn::InterleaveUpper(d, low02, low13);
+  c2 = hn::InterleaveLower(d, high02, high13), c3 = hn::InterleaveUpper(d, high02, high13);
+}
+
+/// The next numbers at `from` in the lanes whose bits are set, 0 in the others. Reads a whole vector.
+HWY_INLINE VF expanded(const float* from, unsigned lanes) {
+#if HWY_TARGET <= HWY_AVX3
+  return VF{_mm512_maskz_expand_ps(static_cast<__mmask16>(lanes), _mm512_loadu_ps(from))};
+#else
+  alignas(64) float to[kLanes] = {};
+  for (; lanes != 0; lanes &= lanes - 1) to[std::countr_zero(lanes)] = *from++;
+  return hn::Load(F(), to);
 #endif
 }
 #endif
