@@ -25,6 +25,22 @@ class TexcoordVector {
     for (VF* plane : {origin_, slopeX_, slopeY_, slopeQ_}) plane[0] = plane[1] = hn::Zero(F());
   }
 
+  /// The planes of each lane's own record.
+  HWY_INLINE TexcoordVector(const TexturePlanes* planes, const std::int32_t* ids) {
+    const F f;
+    const I d;
+    VF rows[4], more[4];
+    VI anchors[4], unused[2];
+    forEach(std::make_index_sequence<4>(), [&](auto j) HWY_ATTR {
+      rows[j] = loadEveryFourth(f, j, [&](std::size_t lane) { return planes[ids[lane]].origin; });
+      more[j] = loadEveryFourth(f, j, [&](std::size_t lane) { return planes[ids[lane]].slopeY; });
+      anchors[j] = loadEveryFourth(d, j, [&](std::size_t lane) { return &planes[ids[lane]].x0; });
+    });
+    transpose(f, rows, origin_[0], origin_[1], slopeX_[0], slopeX_[1]);
+    transpose(f, more, slopeY_[0], slopeY_[1], slopeQ_[0], slopeQ_[1]);
+    transpose(d, anchors, x0_, y0_, unused[0], unused[1]);
+  }
+
   /// Takes a triangle's planes into the lanes `where`.
   HWY_INLINE void set(const TexturePlanes& p, MI where) {
     const F f;

@@ -277,9 +277,7 @@ class Fragments {
   HWY_INLINE void setTexcoords(const std::int32_t* ids, std::size_t i) {
     const F f;
     const I d;
-    TexcoordVector texcoords;
-    for (std::size_t k = 0; k < kLanes; ++k)
-      texcoords.set(tile_.texturePlanes[static_cast<std::size_t>(ids[k])], lanesOf(1U << k));
+    const TexcoordVector texcoords(tile_.texturePlanes.data(), ids);
     const VF one = hn::Set(f, 1.0F), q = hn::Load(f, points_.depth + i);
     texcoords.store(material_->baseColorTexture->data(), hn::Load(d, atX_ + i), hn::Load(d, atY_ + i),
                     context_.map.perspective ? hn::Div(one, q) : one, texture_, i);

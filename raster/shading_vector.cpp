@@ -36,18 +36,20 @@ class Shading {
         background_(packed(context_.frame.background)),
         fragments_(tile, lighting_) {
     for (int x = 0; x < tile.width; x += static_cast<int>(kLanes))
-      hn::Store(lighting_.rayX(centersFrom(x)), F(), rayX_ + x);
+      hn::Store(lighting_.rayX(centersFrom(tile.left + x)), F(), rayX_ + x);
+    for (int y = 0; y < tile.height; y += static_cast<int>(kLanes))
+      hn::Store(lighting_.rayY(centersFrom(tile.top + y)), F(), rayY_ + y);
   }
 
   void run() {
     if (tile_.isEmpty()) return fill();
     if (tile_.plainMaterial != nullptr) setMaterial(*tile_.plainMaterial, Base::kPlain);
     if (tile_.texturedMaterial != nullptr) setMaterial(*tile_.texturedMaterial, Base::kTextured);
-    const bool simple = samples_ == 1 && tile_.plainMaterial != nullptr && !tile_.overlaid;
-    for (int y = 0; y < tile_.height; ++y) {
-      rayY_ = hn::GetLane(lighting_.rayY(hn::Set(I(), (tile_.top + y) * kSubpixels + kOneSample[0].y)));
-      for (int x = 0; x < tile_.width; x += Tile::kCellWidth) {
-        const int end = std::min(x + Tile::kCellWidth, tile_.width);
+    const bool simple = samples_ == 1 && tile_.hasSoleMaterial() && !tile_.overlaid;
+    // Down the strips, as pixels lie in memory.
+    for (int x = 0; x < tile_.width; x += Tile::kCellWidth) {
+      const int end = std::min(x + Tile::kCellWidth, tile_.width);
+      for (int y = 0; y < tile_.height; ++y) {
         if (!tile_.isTouched(x, y))
           for (int i = x; i < end; i += static_cast<int>(kLanes)) store(hn::Set(I(), background_), i, y);
         else if (simple && end == x + Tile::kCellWidth)
@@ -83,20 +85,24 @@ class Shading {
     return hn::LoadU(I(), reinterpret_cast<const std::int32_t*>(&tile_.ids[tile_.pixelOffset(x, y)]));
   }
 
-  // Sub-pixel columns of the pixel centres from x on.
-  HWY_INLINE VI centersFrom(int x) const {
-    const VI left = hn::Set(I(), (tile_.left + x) * kSubpixels + kOneSample[0].x);
-    return hn::Add(left, hn::ShiftLeft<kSubpixelBits>(hn::Iota(I(), 0)));
+  // Sub-pixel columns, or rows, of the centres of the window's pixels from `first` on.
+  HWY_INLINE static VI centersFrom(int first) {
+    static_assert(kOneSample[0].x == kOneSample[0].y);
+    const VI center = hn::Set(I(), first * kSubpixels + kOneSample[0].x);
+    return hn::Add(center, hn::ShiftLeft<kSubpixelBits>(hn::Iota(I(), 0)));
   }
 
-  // A vector of pixels that all lie within the tile and show the plain material or nothing.
+  // A vector of pixels that all lie within the tile and show the tile's one material or nothing.
   HWY_INLINE void simpleBlock(int x, int y) {
     const I d;
-    const MI seen = hn::Ne(idsAt(x, y), hn::Set(d, -1));
+    const VI ids = idsAt(x, y);
+    const MI seen = hn::Ne(ids, hn::Set(d, -1));
     if (hn::AllFalse(d, seen))
       hn::StoreU(hn::Set(d, background_), d, reinterpret_cast<std::int32_t*>(pixelAt(x, y)));
-    else
+    else if (tile_.plainMaterial != nullptr)
       push(x, y, seen, true);
+    else
+      pushTextured(x, y, ids, seen, true);
   }
 
   // A vector of pixels with one sample.
@@ -206,7 +212,7 @@ class Shading {
     if (points_.count == PointBatch::kSize) flush();
     const std::size_t o = tile_.pixelOffset(x, y), n = points_.count;
     hn::Store(hn::Load(f, rayX_ + x), f, points_.rayX + n);
-    hn::Store(hn::Set(f, rayY_), f, points_.rayY + n);
+    hn::Store(hn::Set(f, rayY_[y]), f, points_.rayY + n);
     VF nx, ny, nz, depth;
     if (samples_ > 1) {
       loadColumns(f, &tile_.centers[4 * o], nx, ny, nz, depth);
@@ -228,10 +234,12 @@ class Shading {
   // Shades the points that wait, and writes them.
   void flush() {
     if (points_.count == 0) return;
-    if (base_ == Base::kTextured)
+    if (base_ == Base::kTextured) {
+      setTexcoords();
       addTexels<false>(*material_, texture_, points_);
-    else if (base_ == Base::kColored && material_->baseColorTexture != nullptr)
+    } else if (base_ == Base::kColored && material_->baseColorTexture != nullptr) {
       addTexels<true>(*material_, texture_, points_);
+    }
     shadePoints(points_, *material_, lighting_);
     if (context_.frame.encoding == Encoding::kSrgb)
       writePoints<Encoding::kSrgb>();
@@ -273,23 +281,36 @@ class Shading {
   }
 
   // The same for a tile's one textured material.
-  HWY_INLINE void pushTextured(int x, int y, VI ids, MI seen) {
+  HWY_INLINE void pushTextured(int x, int y, VI ids, MI seen, bool overBackground = false) {
     const I d;
-    alignas(64) std::uint32_t row[kLanes];
-    hn::Store(ids, d, reinterpret_cast<std::int32_t*>(row));
-    TexcoordVector texcoords;
-    forTriangles(row, ids, seen,
-                 [&](std::uint32_t id, MI same) HWY_ATTR { texcoords.set(tile_.texturePlanes[id], same); });
-    const std::size_t n = push(x, y, seen);
-    const VI py = hn::Set(d, (tile_.top + y) * kSubpixels + kOneSample[0].y);
-    texcoords.store(material_->baseColorTexture->data(), centersFrom(x), py, distancesOf(n), texture_, n);
+    const std::size_t n = push(x, y, seen, overBackground);
+    hn::Store(ids, d, ids_ + n);
+    const MI starts = hn::And(startsOf(ids), hn::Gt(ids, hn::Set(d, -1)));
+    runs_[n / kLanes] = {tile_.left + x, tile_.top + y, bitsOf(starts)};
+  }
+
+  // Texture coordinates of points pushed so. Triangles are runs of pixels: the planes of each go to all lanes from its
+  // first on, where later ones replace them.
+  void setTexcoords() {
+    const I d;
+    const TexturePlanes* const planes = tile_.texturePlanes.data();
+    for (std::size_t i = 0; i < points_.count; i += kLanes) {
+      TexcoordVector texcoords;
+      const Runs& runs = runs_[i / kLanes];
+      for (unsigned left = runs.starts; left != 0; left &= left - 1) {
+        const auto first = static_cast<std::size_t>(std::countr_zero(left));
+        texcoords.set(planes[ids_[i + first]], hn::Not(hn::FirstN(d, first)));
+      }
+      texcoords.store(material_->baseColorTexture->data(), centersFrom(runs.x),
+                      hn::Set(d, runs.y * kSubpixels + kOneSample[0].y), distancesOf(i), texture_, i);
+    }
   }
 
   // The same for the triangles' own materials; returns the pixels that are left to the definition.
   MI pushByMaterial(int x, int y, VI ids, MI seen) {
     const I d;
     const F f;
-    const VI px = centersFrom(x);
+    const VI px = centersFrom(tile_.left + x);
     const std::int32_t py = (tile_.top + y) * kSubpixels + kOneSample[0].y;
     alignas(64) std::uint32_t row[kLanes];
     hn::Store(ids, d, reinterpret_cast<std::int32_t*>(row));
@@ -348,12 +369,18 @@ class Shading {
 
   // Points waiting to be shaded, all of one material.
   const Material* material_ = nullptr;
-  alignas(64) float rayX_[128 + 16];  // of the tile's columns
-  float rayY_ = 0.0F;                 // of the row
+  alignas(64) float rayX_[128 + 16], rayY_[64 + 16];  // of the tile's columns and rows
   Base base_ = Base::kColored;
   PointBatch points_;
   TextureBatch texture_;
   Place places_[PointBatch::kSize / kLanes];
+  // Of a tile's one textured material: triangles, the vectors' first pixels in the window, and where triangles begin in them.
+  struct Runs {
+    std::int32_t x, y;
+    unsigned starts;
+  };
+  alignas(64) std::int32_t ids_[PointBatch::kSize];
+  Runs runs_[PointBatch::kSize / kLanes];
 };
 
 void shadeTileVector(Tile& tile) {

@@ -23,8 +23,7 @@ struct FootprintVector {
 HWY_INLINE VF levelOfVector(const Texture::Data& t, const FootprintVector& p) {
   const I d;
   const F f;
-  const VF w = hn::Set(f, static_cast<float>(t.levels[0].width));
-  const VF h = hn::Set(f, static_cast<float>(t.levels[0].height));
+  const VF w = hn::Set(f, t.tables.width[0]), h = hn::Set(f, t.tables.height[0]);
   const VF ax = hn::Mul(p.ux, w), bx = hn::Mul(p.vx, h), ay = hn::Mul(p.uy, w), by = hn::Mul(p.vy, h);
   const VF dx = hn::Add(hn::Mul(ax, ax), hn::Mul(bx, bx)), dy = hn::Add(hn::Mul(ay, ay), hn::Mul(by, by));
   const VF square = hn::Min(hn::Max(hn::Max(dx, dy), hn::Set(f, 1e-30F)), hn::Set(f, 1e30F));
@@ -60,6 +59,13 @@ struct TapVector {
   VI texel;
   VF share;
 };
+
+/// tapOf() of texel.h where all lanes are linear: of a coordinate in [0, 1] none lies beyond the level and its border.
+HWY_INLINE TapVector linearTapsOf(VF wrappedU, VF size) {
+  const F f;
+  const VF x = hn::Sub(hn::Mul(wrappedU, size), hn::Set(f, 0.5F)), base = hn::Floor(x);
+  return {wholeOf(base), hn::Sub(x, base)};
+}
 
 /// tapOf() of texel.h. Whatever a lane holds, its texel is within the level and its border.
 HWY_INLINE TapVector tapsOf(VF wrappedU, VF size, VI last, MF linear) {
@@ -127,13 +133,13 @@ class TextureSampler {
     oneLevel_ = filter == Filter::kNearest || filter == Filter::kLinear;
     minifiesLinearly_ = filter == Filter::kLinear || filter == Filter::kLinearMipNearest ||
                         filter == Filter::kLinearMipLinear;
+    allLinear_ = minifiesLinearly_ && t_.sampler.linearMagnification;
   }
 
   /// Calls body(i, colour) for the points [i, i + kLanes) of `count`, a multiple of that.
   template <class Body>
   HWY_INLINE void operator()(std::size_t count, const Body& body) const {
-    const VI none = hn::Zero(I());
-    for (std::size_t i = 0; i < count; i += kLanes) setTaps(i, none);
+    setTaps(count, hn::Zero(I()));
     if (oneLevel_ || nearestMip_) {
       for (std::size_t i = 0; i < count; i += kLanes) body(i, texelAt(i));
       return;
@@ -144,7 +150,7 @@ class TextureSampler {
       hn::Store(fine.g, F(), p_.fine[1] + i);
       hn::Store(fine.b, F(), p_.fine[2] + i);
     }
-    for (std::size_t i = 0; i < count; i += kLanes) setTaps(i, hn::Set(I(), 1));
+    setTaps(count, hn::Set(I(), 1));
     for (std::size_t i = 0; i < count; i += kLanes) body(i, mixed(i, texelAt(i)));
   }
 
@@ -164,21 +170,34 @@ class TextureSampler {
     const MF linear =
         hn::Or(minifiesLinearly_ ? smaller : none, t_.sampler.linearMagnification ? hn::Not(smaller) : none);
     const VF rounded = nearestMip_ ? hn::Add(lambda, hn::Set(f, 0.5F)) : lambda;
-    const VI chosen = oneLevel_ ? hn::Zero(d) : hn::Min(hn::ConvertTo(d, rounded), lastLevel());
+    const VI chosen = oneLevel_ ? hn::Zero(d) : hn::Min(wholeOf(rounded), lastLevel());
     return {hn::IfThenElseZero(hn::RebindMask(d, smaller), hn::Max(chosen, hn::Zero(d))), smaller, linear};
   }
 
-  // Where the texels of points [i, i + kLanes) lie, each point in a level `coarser` than its own.
+  // Where the texels of all points lie, each point in a level `coarser` than its own.
+  HWY_INLINE void setTaps(std::size_t count, VI coarser) const {
+    if (allLinear_)
+      for (std::size_t i = 0; i < count; i += kLanes) setTaps<true>(i, coarser);
+    else
+      for (std::size_t i = 0; i < count; i += kLanes) setTaps<false>(i, coarser);
+  }
+
+  template <bool kAllLinear>
   HWY_INLINE void setTaps(std::size_t i, VI coarser) const {
     const I d;
     const F f;
     const LevelTables& l = t_.tables;
     const Chosen chosen = chosenAt(hn::Load(f, p_.lambda + i));
     const VI level = hn::Min(hn::Add(chosen.level, coarser), lastLevel());
-    const TapVector x = tapsOf(wrappedVector(hn::Load(f, p_.u + i), t_.sampler.wrapU),
-                               lookUp(f, l.width, level), lookUp(d, l.lastColumn, level), chosen.linear);
-    const TapVector y = tapsOf(wrappedVector(hn::Load(f, p_.v + i), t_.sampler.wrapV),
-                               lookUp(f, l.height, level), lookUp(d, l.lastRow, level), chosen.linear);
+    const VF u = wrappedVector(hn::Load(f, p_.u + i), t_.sampler.wrapU), width = lookUp(f, l.width, level);
+    const VF v = wrappedVector(hn::Load(f, p_.v + i), t_.sampler.wrapV), height = lookUp(f, l.height, level);
+    TapVector x, y;
+    if constexpr (kAllLinear) {
+      x = linearTapsOf(u, width), y = linearTapsOf(v, height);
+    } else {
+      x = tapsOf(u, width, lookUp(d, l.lastColumn, level), chosen.linear);
+      y = tapsOf(v, height, lookUp(d, l.lastRow, level), chosen.linear);
+    }
     const VI stride = lookUp(d, l.stride, level);
     const VI upper = hn::Add(hn::Add(lookUp(d, l.origin, level), hn::Mul(y.texel, stride)), x.texel);
     hn::Store(upper, d, p_.upper + i);
@@ -215,7 +234,7 @@ class TextureSampler {
 
   const Texture::Data& t_;
   TextureBatch& p_;
-  bool nearestMip_, oneLevel_, minifiesLinearly_;
+  bool nearestMip_, oneLevel_, minifiesLinearly_, allLinear_;
 };
 #endif
 

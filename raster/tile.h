@@ -65,7 +65,7 @@ struct alignas(16) CenterEdges {
 };
 
 /// The planes of a record's texture coordinates times q, and the slopes of q itself.
-struct TexturePlanes {
+struct alignas(16) TexturePlanes {
   float origin[2], slopeX[2], slopeY[2];
   float slopeQ[2];      ///< along x and y; 0 in orthographic views
   std::int32_t x0, y0;  ///< as the record's

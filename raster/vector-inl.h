@@ -44,6 +44,17 @@ HWY_INLINE VF dot3(VF a, VF b, VF c, VF d, VF e, VF f) {
   return hn::Add(hn::Add(hn::Mul(a, b), hn::Mul(c, d)), hn::Mul(e, f));
 }
 
+/// The whole part of numbers in the range of integers. hn::ConvertTo() also takes care of others.
+HWY_INLINE VI wholeOf(VF v) {
+#if HWY_TARGET <= HWY_AVX3
+  return VI{_mm512_maskz_cvttps_epi32(0xffff, v.raw)};  // g++ warns of the other one
+#elif HWY_TARGET <= HWY_AVX2
+  return VI{_mm256_cvttps_epi32(v.raw)};
+#else
+  return hn::ConvertTo(I(), v);
+#endif
+}
+
 /// body(0), body(1) …, each with a constant: unrolled, so that what is kept per sample can stay in registers.
 template <std::size_t... kIndices, class Body>
 HWY_INLINE void forEach(std::index_sequence<kIndices...> /*indices*/, const Body& body) {
@@ -114,6 +125,15 @@ HWY_INLINE void transpose(D d, const V (&rows)[4], V& c0, V& c1, V& c2, V& c3) {
           high13 = hn::InterleaveUpper(d, rows[1], rows[3]);
   c0 = hn::InterleaveLower(d, low02, low13), c1 = hn::InterleaveUpper(d, low02, low13);
   c2 = hn::InterleaveLower(d, high02, high13), c3 = hn::InterleaveUpper(d, high02, high13);
+}
+
+/// Where a number differs from that of the lane before; the first lane does.
+HWY_INLINE MI startsOf(VI v) {
+  const I d;
+  alignas(64) static constexpr std::int32_t kBefore[16] = {0, 0, 1, 2,  3,  4,  5,  6,
+                                                           7, 8, 9, 10, 11, 12, 13, 14};
+  const VI before = hn::TableLookupLanes(v, hn::IndicesFromVec(d, hn::Load(d, kBefore)));
+  return hn::Or(hn::Ne(v, before), hn::FirstN(d, 1));
 }
 
 /// The next numbers at `from` in the lanes whose bits are set, 0 in the others. Reads a whole vector.
