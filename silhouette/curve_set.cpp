@@ -1,16 +1,26 @@
 #include "silhouette/curve_set.h"
 
+#include <algorithm>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
 #include "silhouette/face_normal.h"
 #include "silhouette/feature_curves.h"
+#include "silhouette/pixel_bound.h"
+#include "silhouette/view_scale.h"
 
 namespace limn::silhouette {
 namespace {
 
 constexpr std::size_t kItemsPerBlock = 4096;
+
+// Upper bound of CurveError::bend where a unit measures a pixel.
+float bendOf(const CurveOffsets& d) {
+  const float longest = std::max(glm::length(d[1] - 2.0f * d[0]), glm::length(d[0] - 2.0f * d[1]));
+  return kRounding * PixelMap::kChordFactor * longest;
+}
 
 }  // namespace
 
@@ -43,7 +53,7 @@ void CurveSet::linkEdge(std::size_t e, const Mesh& mesh, const Topology& topolog
   link.faces = {face, edge.boundary ? face : edge.faces[1].triangle};
   link.ends = vertices[e][0];
   link.always = bends && !smooth;
-  link.mayBend = bends && smooth;
+  link.bend = bends && smooth ? bendOf(curves[e]) : 0.0f;
   // Where normals are not believed at all the mesh stays as it is, to the last bit.
   link.bridged = !edge.nonManifold && (trust[e][0] != 0.0f || trust[e][1] != 0.0f);
   link.seam = vertices[e][0] != vertices[e][1];
@@ -65,7 +75,12 @@ void CurveSet::spread(const Mesh& mesh, const Crew& crew) {
     high = glm::max(high, p);
   }
   middle = mesh.positions.empty() ? glm::vec3(0.0f) : 0.5f * (low + high);
-  radius = mesh.positions.empty() ? 0.0f : 0.5f * glm::length(high - low);
+  largestBend = 0.0f;
+  for (const EdgeLink& link : links) largestBend = std::max(largestBend, link.bend);
+  float farthest2 = 0.0f;
+  for (const glm::vec3& p : mesh.positions) farthest2 = std::max(farthest2, glm::dot(p - middle, p - middle));
+  // An offset is at most as long as the longer second difference.
+  radius = kRounding * std::sqrt(farthest2) + 2.0f * largestBend;
 }
 
 }  // namespace limn::silhouette

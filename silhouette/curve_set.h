@@ -38,10 +38,10 @@ class PointNormals {
 struct EdgeLink {
   std::array<std::uint32_t, 2> faces{};  ///< the one twice on a boundary
   std::array<std::uint32_t, 2> ends{};   ///< vertices of faces[0]
-  bool always = false;                   ///< sampled from every viewpoint
-  bool bridged = false;                  ///< may have silhouette points
-  bool mayBend = false;                  ///< smooth, with a curve: ring.h
-  bool seam = false;                     ///< the faces have vertices of their own
+  float bend = 0;        ///< smooth, with a curve (ring.h): at most so far from its chord, in model units
+  bool always = false;   ///< sampled from every viewpoint
+  bool bridged = false;  ///< may have silhouette points
+  bool seam = false;     ///< the faces have vertices of their own
 };
 
 struct CurveSet {
@@ -50,7 +50,8 @@ struct CurveSet {
   PointNormals corners;                ///< of the mesh's vertices
   PointNormals planes;                 ///< of its triangles: a corner, the unit normal
   glm::vec3 middle{0.0f};              ///< of the mesh, and how far it reaches from there
-  float radius = 0;
+  float radius = 0;                    ///< with room for the curves' control points
+  float largestBend = 0;
   std::vector<CurveOffsets> curves;         ///< bridges and feature curves; zero where an edge stays straight
   std::vector<std::array<float, 2>> trust;  ///< in the ends of bridges, 0 … 1: robust_ends.h
   std::vector<glm::vec3> faceNormals;       ///< unit; zero for degenerate triangles

@@ -17,7 +17,6 @@ using glm::dot;
 using glm::vec3;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kRounding = 1.001f;           // covers the roundings of bounds
 constexpr float kConeMargin = 1e-3f;          // in cosines
 constexpr std::uint32_t kLongestVector = 16;  // floats
 
@@ -181,32 +180,7 @@ EdgeClusters::Eye::Eye(const View& from, const Parameters& parameters, float lar
       silhouetteness(parameters.silhouetteness),
       tolerance(parameters.segments > 0 ? 0.0f : parameters.tolerance),
       beta(largestBeta),
-      axis(-from.modelToView[0][2], -from.modelToView[1][2], -from.modelToView[2][2]),
-      offset(-from.modelToView[3][2]),
-      pixels(std::max(from.projection.pixelsX, from.projection.pixelsY)),
-      nearPlane(from.projection.nearPlane) {
-  // A similarity lengthens by its columns' length; of other matrices the Frobenius norm is a bound.
-  float longest = 0.0f, sum = 0.0f, skew = 0.0f;
-  for (int k = 0; k < 3; ++k) {
-    const vec3 column(from.modelToView[k]), next(from.modelToView[(k + 1) % 3]);
-    longest = std::max(longest, lengthOf(column));
-    sum += dot(column, column);
-    skew = std::max(skew, std::fabs(dot(column, next)));
-  }
-  stretch = kRounding * (skew > 1e-4f * sum ? std::sqrt(sum) : longest);
-}
-
-// Pixels that a unit of the model measures at most near the cluster; infinite where it may reach the near plane.
-float EdgeClusters::visibleScale(const Cluster& cluster, const Eye& eye) const {
-  if (!eye.perspective) return eye.stretch * eye.pixels;
-  const float reach = (cluster.radius + cluster.bulge) * eye.stretch;
-  const float depth = dot(eye.axis, cluster.center) + eye.offset, nearest = depth - reach;
-  if (!(nearest > eye.nearPlane)) return kInfinity;
-  // |δ_xy - s δ_z| <= |δ| √(1 + s²), s the steepest slope of a point of the cluster (pixel_bound.h).
-  const float distance = lengthOf(cluster.center - eye.view.eye) * eye.stretch + reach;
-  const float slope2 = std::max(0.0f, distance * distance - nearest * nearest) / (nearest * nearest);
-  return kRounding * eye.stretch * eye.pixels * std::sqrt(1.0f + slope2) / nearest;
-}
+      scale(from) {}
 
 // Whether α = 0 for every edge whose normals lie in the cone and whose points lie in the sphere: with θ the angle
 // between the axis and the line of sight, ω that of the cone and δ that of the sphere, all facings are at least
@@ -240,7 +214,7 @@ std::uint64_t EdgeClusters::classify(std::size_t c, const Eye& eye, const EdgeTe
                                      std::span<float> alphas, float& scale) const {
   const Cluster& cluster = clusters_[c];
   if (cluster.bulge == 0.0f) return 0;
-  scale = visibleScale(cluster, eye);
+  scale = eye.scale.within(cluster.center, cluster.radius + cluster.bulge);
   const float threshold = eye.tolerance / scale;
   if (cluster.bulge <= threshold) return 0;
   if (cluster.always == 0 && facesAway(cluster, eye)) return 0;

@@ -20,6 +20,7 @@
 #include "silhouette/alpha_kernel.h"
 #include "silhouette/edge_curves.h"
 #include "silhouette/silhouetteness.h"
+#include "silhouette/view_scale.h"
 
 namespace limn::silhouette {
 
@@ -50,11 +51,7 @@ class EdgeClusters {
     Silhouetteness silhouetteness;
     float tolerance;  ///< pixels; 0 where segments are fixed: every bend counts
     float beta;       ///< the largest of any edge
-    glm::vec3 axis;   ///< depth of a point p: ⟨axis, p⟩ + offset
-    float offset;
-    float stretch;  ///< at most so much does the view matrix lengthen
-    float pixels;   ///< per unit at depth 1
-    float nearPlane;
+    ViewScale scale;
   };
   Eye eyeOf(const View& view, const Parameters& parameters) const { return {view, parameters, largestBeta_}; }
 
@@ -80,7 +77,6 @@ class EdgeClusters {
                     std::span<const CurveOffsets> curves, std::span<const glm::vec3> centers,
                     const Parameters& parameters);
   void boundCluster(std::size_t c, const Mesh& mesh, const EdgeTest& test);
-  float visibleScale(const Cluster& cluster, const Eye& eye) const;
   bool facesAway(const Cluster& cluster, const Eye& eye) const;
 
   std::vector<std::uint32_t> order_;

@@ -4,6 +4,7 @@
 #include "silhouette/collect.h"
 #include "silhouette/crossing_kernel.h"
 #include "silhouette/facing_kernel.h"
+#include "silhouette/view_scale.h"
 
 namespace limn::silhouette {
 namespace {
@@ -70,12 +71,15 @@ void EdgeSearch::run(const Mesh& mesh, const Topology& topology, const CurveSet&
   planeHeights.resize(mesh.triangleCount());
   states.resize(edges);
   pointsOf.resize(edges);
-  findVisible(curves, view, crew);
+  // What bends less nobody sees.
+  const float scale = ViewScale(view).within(curves.middle, curves.radius);
+  const float leastBend = parameters.segments > 0 ? 0.0f : kUnseen * parameters.tolerance / scale;
+  findVisible(curves, view, curves.largestBend > leastBend, crew);
 
   const RingTest ring{mesh, topology, curves, view, visible, heights, points, pointsOf};
-  const float largest = ring.largestProduct();
+  const Limits limits{leastBend, ring.largestProduct()};
   crew.forBlocks(edges, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) states[e] = stateOf(e, curves, largest);
+    for (std::size_t e = begin; e < end; ++e) states[e] = stateOf(e, curves, limits);
   });
   collect(
       crew, edges, blockCounts, candidates, [&](std::size_t e) { return states[e] != 0 ? 1U : 0U; },
@@ -88,28 +92,30 @@ void EdgeSearch::run(const Mesh& mesh, const Topology& topology, const CurveSet&
   });
 }
 
-void EdgeSearch::findVisible(const CurveSet& curves, const View& view, const Crew& crew) {
+void EdgeSearch::findVisible(const CurveSet& curves, const View& view, bool mayBend, const Crew& crew) {
   const bool perspective = view.projection.perspective;
   const glm::vec3 eye = perspective ? view.eye : -view.direction;
   crew.forBlocks(heights.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     computeHeights(eye, perspective, curves.corners.arrays().from(begin), end - begin, &heights[begin]);
     for (std::size_t v = begin; v < end; ++v) visible[v] = heights[v] >= 0.0f ? 1 : 0;
   });
+  if (!mayBend) return;
   crew.forBlocks(planeHeights.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     computeHeights(eye, perspective, curves.planes.arrays().from(begin), end - begin, &planeHeights[begin]);
   });
 }
 
 // Whether silhouette curves cross the edge, and whether it may show its curve.
-std::uint8_t EdgeSearch::stateOf(std::size_t e, const CurveSet& curves, float largest) const {
+std::uint8_t EdgeSearch::stateOf(std::size_t e, const CurveSet& curves, const Limits& limits) const {
   const EdgeLink& link = curves.links[e];
-  const bool isNear = planeHeights[link.faces[0]] * planeHeights[link.faces[1]] < largest;
+  const bool bends = link.bend > limits.leastBend &&
+                     planeHeights[link.faces[0]] * planeHeights[link.faces[1]] < limits.largestProduct;
   bool differs = visible[link.ends[0]] != visible[link.ends[1]];
   if (link.seam) {
     const std::array<std::uint32_t, 2>& second = curves.vertices[e][1];
     differs = differs || visible[second[0]] != visible[second[1]];
   }
-  const unsigned mayBend = (link.always ? 1U : 0U) | ((link.mayBend ? 1U : 0U) & (isNear ? 1U : 0U));
+  const unsigned mayBend = (link.always ? 1U : 0U) | (bends ? 1U : 0U);
   const unsigned isCut = (differs ? 1U : 0U) & ((link.bridged ? 1U : 0U) | (link.always ? 1U : 0U));
   return static_cast<std::uint8_t>(isCut * kCrossed + mayBend * kMayBend);
 }

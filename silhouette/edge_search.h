@@ -17,9 +17,10 @@
 namespace limn::silhouette {
 
 struct EdgeSearch {
-  std::vector<float> heights;              ///< per vertex of the mesh: contour.h, facing()
-  std::vector<std::uint8_t> visible;       ///< likewise
-  std::vector<float> planeHeights;         ///< per triangle: the eye's distance from its plane
+  std::vector<float> heights;         ///< per vertex of the mesh: contour.h, facing()
+  std::vector<std::uint8_t> visible;  ///< likewise
+  std::vector<float>
+      planeHeights;  ///< per triangle: the eye's distance from its plane, where curves may be seen
   std::vector<std::uint8_t> states;        ///< per edge
   std::vector<std::uint32_t> candidates;   ///< edges that may matter, ascending
   std::vector<float> alphas;               ///< of each: the share of its curve that is shown
@@ -41,8 +42,13 @@ struct EdgeSearch {
  private:
   enum State : std::uint8_t { kCrossed = 1, kMayBend = 2 };
 
-  void findVisible(const CurveSet& curves, const View& view, const Crew& crew);
-  std::uint8_t stateOf(std::size_t e, const CurveSet& curves, float largest) const;
+  /// Of edges that may show their curves: in model units, and of the eye's distances from the planes of their faces.
+  struct Limits {
+    float leastBend, largestProduct;
+  };
+
+  void findVisible(const CurveSet& curves, const View& view, bool mayBend, const Crew& crew);
+  std::uint8_t stateOf(std::size_t e, const CurveSet& curves, const Limits& limits) const;
   void findPoints(const Mesh& mesh, const CurveSet& curves, const View& view, const Crew& crew);
   void findAlphas(std::size_t begin, std::size_t end, const RingTest& ring, const PixelBound& bound,
                   const Parameters& parameters);
