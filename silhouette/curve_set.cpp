@@ -36,6 +36,10 @@ void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const Paramet
     for (std::size_t e = begin; e < end; ++e) linkEdge(e, mesh, topology, parameters);
   });
   computeFaceNormals(mesh, topology, crew, faceNormals);
+  runs.resize((edges + EdgeRun::kEdges - 1) / EdgeRun::kEdges);
+  crew.forBlocks(runs.size(), kItemsPerBlock / EdgeRun::kEdges, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) boundRun(r, mesh);
+  });
   spread(mesh, crew);
   blocking.prepare(mesh, topology);
 }
@@ -57,6 +61,31 @@ void CurveSet::linkEdge(std::size_t e, const Mesh& mesh, const Topology& topolog
   // Where normals are not believed at all the mesh stays as it is, to the last bit.
   link.bridged = !edge.nonManifold && (trust[e][0] != 0.0f || trust[e][1] != 0.0f);
   link.seam = vertices[e][0] != vertices[e][1];
+}
+
+void CurveSet::boundRun(std::size_t r, const Mesh& mesh) {
+  const std::size_t first = firstOfRun(r), last = firstOfRun(r + 1);
+  EdgeRun& run = runs[r] = {};
+  glm::vec3 low(std::numeric_limits<float>::infinity()), high(-low), sum(0.0f);
+  const auto forEnds = [&](std::size_t e, const auto& visit) {
+    for (std::size_t face = 0; face < (links[e].seam ? 2u : 1u); ++face)
+      for (const std::uint32_t v : vertices[e][face]) visit(v);
+  };
+  for (std::size_t e = first; e < last; ++e) {
+    forEnds(e, [&](std::uint32_t v) {
+      low = glm::min(low, mesh.positions[v]);
+      high = glm::max(high, mesh.positions[v]);
+      sum += mesh.normals[v];
+    });
+    run.bend = std::max(run.bend, links[e].bend);
+    run.always = run.always || links[e].always;
+  }
+  run.cone.begin(low, high, sum);
+  for (std::size_t e = first; e < last; ++e) {
+    forEnds(e, [&](std::uint32_t v) { run.cone.include(mesh.normals[v]); });
+    for (const std::uint32_t face : links[e].faces) run.cone.include(faceNormals[face]);
+  }
+  run.cone.finish();
 }
 
 void CurveSet::spread(const Mesh& mesh, const Crew& crew) {

@@ -1,6 +1,7 @@
 // What silhouette curves know of a mesh from every viewpoint.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -10,6 +11,7 @@
 #include "silhouette/edge_curves.h"
 #include "silhouette/facing_kernel.h"
 #include "silhouette/method.h"
+#include "silhouette/normal_cone.h"
 #include "silhouette/robust_ends.h"
 
 namespace limn::silhouette {
@@ -44,9 +46,19 @@ struct EdgeLink {
   bool seam = false;     ///< the faces have vertices of their own
 };
 
+/// A run of edges, passed over together where none of them matters.
+struct EdgeRun {
+  static constexpr std::size_t kEdges = 64;
+
+  NormalCone cone;      ///< around the ends and the normals at them and of the faces
+  float bend = 0;       ///< the largest
+  bool always = false;  ///< one at least is
+};
+
 struct CurveSet {
   std::vector<EdgeVertices> vertices;  ///< of every edge
   std::vector<EdgeLink> links;         ///< likewise
+  std::vector<EdgeRun> runs;           ///< edges 0 … 63, 64 … 127 and so on
   PointNormals corners;                ///< of the mesh's vertices
   PointNormals planes;                 ///< of its triangles: a corner, the unit normal
   glm::vec3 middle{0.0f};              ///< of the mesh, and how far it reaches from there
@@ -57,10 +69,14 @@ struct CurveSet {
   std::vector<glm::vec3> faceNormals;       ///< unit; zero for degenerate triangles
   Blocking blocking;
 
+  /// The first edge of a run, or the number of edges.
+  std::size_t firstOfRun(std::size_t r) const { return std::min(r * EdgeRun::kEdges, links.size()); }
+
   void prepare(const Mesh& mesh, const Topology& topology, const Parameters& parameters, const Crew& crew);
 
  private:
   void linkEdge(std::size_t e, const Mesh& mesh, const Topology& topology, const Parameters& parameters);
+  void boundRun(std::size_t r, const Mesh& mesh);
   void spread(const Mesh& mesh, const Crew& crew);
 
   RobustEnds robust_;

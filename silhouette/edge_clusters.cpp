@@ -17,7 +17,6 @@ using glm::dot;
 using glm::vec3;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kConeMargin = 1e-3f;          // in cosines
 constexpr std::uint32_t kLongestVector = 16;  // floats
 
 std::uint32_t spread(std::uint32_t x) {  // ten bits, two zeros between
@@ -158,20 +157,14 @@ void EdgeClusters::boundCluster(std::size_t c, const Mesh& mesh, const EdgeTest&
     ny_[i] = n.y;
     nz_[i] = n.z;
   }
-  cluster.center = 0.5f * (low + high);
-  cluster.radius = 0.5f * kRounding * lengthOf(high - low);
-  const float length = lengthOf(sum);
-  cluster.axis = length > 0.0f ? sum / length : vec3(0.0f);
-  float least = length > 0.0f ? 1.0f : -1.0f;
+  cluster.cone.begin(low, high, sum);
   for (std::size_t i = cluster.firstVertex; i < cluster.firstVertex + cluster.vertexCount; ++i)
-    least = std::min(least, dot(cluster.axis, mesh.normals[vertices_[i]]));
+    cluster.cone.include(mesh.normals[vertices_[i]]);
   for (std::size_t place = c * kEdgesPerCluster; place < std::min((c + 1) * kEdgesPerCluster, order_.size());
        ++place)
     for (const Side& face : topology_->edges()[order_[place]].faces)
-      if (face.triangle != kNone)
-        least = std::min(least, dot(cluster.axis, test.faceNormals()[face.triangle]));
-  cluster.cosine = least - kConeMargin;
-  cluster.sine = std::sqrt(std::max(0.0f, 1.0f - cluster.cosine * cluster.cosine));
+      if (face.triangle != kNone) cluster.cone.include(test.faceNormals()[face.triangle]);
+  cluster.cone.finish();
 }
 
 EdgeClusters::Eye::Eye(const View& from, const Parameters& parameters, float largestBeta)
@@ -182,39 +175,19 @@ EdgeClusters::Eye::Eye(const View& from, const Parameters& parameters, float lar
       beta(largestBeta),
       scale(from) {}
 
-// Whether α = 0 for every edge whose normals lie in the cone and whose points lie in the sphere: with θ the angle
-// between the axis and the line of sight, ω that of the cone and δ that of the sphere, all facings are at least
-// cos(θ + ω + δ) in size and of one sign. They differ by at most |n - n'| + |v - v'| <= 2 (sin ω + sin δ).
+// Whether α = 0 for every edge of the cluster.
 bool EdgeClusters::facesAway(const Cluster& cluster, const Eye& eye) const {
-  if (cluster.cosine <= 0.0f) return false;
-  vec3 sight = -eye.view.direction;
-  float sinDelta = 0.0f;
-  if (eye.perspective) {
-    sight = eye.view.eye - cluster.center;
-    const float distance = lengthOf(sight);
-    if (!(distance > cluster.radius)) return false;
-    sight /= distance;
-    sinDelta = cluster.radius / distance;
-  }
-  const float cosDelta = std::sqrt(1.0f - sinDelta * sinDelta);
-  const float cosTheta = std::min(1.0f, std::fabs(dot(sight, cluster.axis)));
-  const float sinTheta = std::sqrt(1.0f - cosTheta * cosTheta);
-  const float cosSum = cosTheta * cluster.cosine - sinTheta * cluster.sine;
-  const float sinSum = sinTheta * cluster.cosine + cosTheta * cluster.sine;
-  if (cosSum <= 0.0f) return false;
-  const float least = cosSum * cosDelta - sinSum * sinDelta - kConeMargin;
-  if (eye.silhouetteness == Silhouetteness::kCrossing) {
-    const float spread = std::min(1.0f - least, 2.0f * (cluster.sine + sinDelta) + kConeMargin);
-    return least > 0.0f && least > eye.beta * spread;
-  }
-  return least > 0.0f && least * least > eye.beta;
+  const FacingBound facings = cluster.cone.facings(eye.view);
+  if (!(facings.least > 0.0f)) return false;
+  if (eye.silhouetteness == Silhouetteness::kCrossing) return facings.least > eye.beta * facings.spread;
+  return facings.least * facings.least > eye.beta;
 }
 
 std::uint64_t EdgeClusters::classify(std::size_t c, const Eye& eye, const EdgeTest& test,
                                      std::span<float> alphas, float& scale) const {
   const Cluster& cluster = clusters_[c];
   if (cluster.bulge == 0.0f) return 0;
-  scale = eye.scale.within(cluster.center, cluster.radius + cluster.bulge);
+  scale = eye.scale.within(cluster.cone.center, cluster.cone.radius + cluster.bulge);
   const float threshold = eye.tolerance / scale;
   if (cluster.bulge <= threshold) return 0;
   if (cluster.always == 0 && facesAway(cluster, eye)) return 0;

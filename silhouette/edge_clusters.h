@@ -19,6 +19,7 @@
 
 #include "silhouette/alpha_kernel.h"
 #include "silhouette/edge_curves.h"
+#include "silhouette/normal_cone.h"
 #include "silhouette/silhouetteness.h"
 #include "silhouette/view_scale.h"
 
@@ -62,12 +63,9 @@ class EdgeClusters {
 
  private:
   struct Cluster {
-    glm::vec3 center{0.0f};
-    float radius = 0;
-    glm::vec3 axis{0.0f};         // of the normal cone
-    float cosine = -1, sine = 0;  // of its half angle; cosine <= 0: no cone
-    float bulge = 0;              // of its edges, the largest
-    std::uint64_t always = 0;     // edges that are smooth from every viewpoint
+    NormalCone cone;
+    float bulge = 0;           // of its edges, the largest
+    std::uint64_t always = 0;  // edges that are smooth from every viewpoint
     std::uint64_t seams = 0;
     // Of vertices_: the last is repeated up to whole vectors.
     std::uint32_t firstVertex = 0, vertexCount = 0, paddedCount = 0;

@@ -78,12 +78,7 @@ void EdgeSearch::run(const Mesh& mesh, const Topology& topology, const CurveSet&
 
   const RingTest ring{mesh, topology, curves, view, visible, heights, points, pointsOf};
   const Limits limits{leastBend, ring.largestProduct()};
-  crew.forBlocks(edges, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t e = begin; e < end; ++e) states[e] = stateOf(e, curves, limits);
-  });
-  collect(
-      crew, edges, blockCounts, candidates, [&](std::size_t e) { return states[e] != 0 ? 1U : 0U; },
-      [&](std::size_t e, std::uint32_t at) { candidates[at] = static_cast<std::uint32_t>(e); });
+  findCandidates(curves, view, limits, crew);
   findPoints(mesh, curves, view, crew);
   alphas.resize(candidates.size());
   const PixelBound bound(view);
@@ -103,6 +98,37 @@ void EdgeSearch::findVisible(const CurveSet& curves, const View& view, bool mayB
   crew.forBlocks(planeHeights.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     computeHeights(eye, perspective, curves.planes.arrays().from(begin), end - begin, &planeHeights[begin]);
   });
+}
+
+void EdgeSearch::findCandidates(const CurveSet& curves, const View& view, const Limits& limits,
+                                const Crew& crew) {
+  constexpr std::size_t kRunsPerBlock = kItemsPerBlock / EdgeRun::kEdges;
+  candidatesOfRun.resize(curves.runs.size());
+  crew.forBlocks(curves.runs.size(), kRunsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) candidatesOfRun[r] = lookInto(r, curves, view, limits);
+  });
+  collect(
+      crew, curves.runs.size(), blockCounts, candidates,
+      [&](std::size_t r) { return std::uint32_t{candidatesOfRun[r]}; },
+      [&](std::size_t r, std::uint32_t at) {
+        for (std::size_t e = curves.firstOfRun(r); e < curves.firstOfRun(r + 1); ++e)
+          if (states[e] != 0) candidates[at++] = static_cast<std::uint32_t>(e);
+      });
+}
+
+// Sets the states of a run's edges and returns how many may matter. Runs that clearly face one way are passed over: nothing
+// crosses them, and what bends visibly stands out at the contour only.
+std::uint8_t EdgeSearch::lookInto(std::size_t r, const CurveSet& curves, const View& view,
+                                  const Limits& limits) {
+  const EdgeRun& run = curves.runs[r];
+  const float least = run.always ? 0.0f : run.cone.facings(view).least;
+  if (least > 0.0f && (run.bend <= limits.leastBend || least * least > RingTest::kBeta)) return 0;
+  std::uint8_t count = 0;
+  for (std::size_t e = curves.firstOfRun(r); e < curves.firstOfRun(r + 1); ++e) {
+    states[e] = stateOf(e, curves, limits);
+    if (states[e] != 0) ++count;
+  }
+  return count;
 }
 
 // Whether silhouette curves cross the edge, and whether it may show its curve.

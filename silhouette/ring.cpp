@@ -12,7 +12,6 @@ namespace {
 using glm::dot;
 using glm::vec3;
 
-constexpr float kBeta = 0.02f;   // of (2): narrow, what matters is the outline
 constexpr float kFacing = 0.2f;  // sine of the angle from the contour at which a
                                  // corner's cover is over
 // Edge lengths by which the edge must pass what covers it to count, and to count wholly. Its curve begins late,

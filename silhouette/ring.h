@@ -20,6 +20,8 @@
 namespace limn::silhouette {
 
 struct RingTest {
+  static constexpr float kBeta = 0.02f;  ///< of (2): narrow, what matters is the outline
+
   const Mesh& mesh;
   const Topology& topology;
   const CurveSet& curves;

@@ -85,9 +85,10 @@ class SilhouetteCurves final : public MethodState {
     };
     levelCapacity(scratch_, searched(&EdgeSearch::heights), searched(&EdgeSearch::visible),
                   searched(&EdgeSearch::planeHeights), searched(&EdgeSearch::states),
-                  searched(&EdgeSearch::candidates), searched(&EdgeSearch::alphas),
-                  searched(&EdgeSearch::crossed), searched(&EdgeSearch::points),
-                  searched(&EdgeSearch::pointsOf), searched(&EdgeSearch::blockCounts));
+                  searched(&EdgeSearch::candidatesOfRun), searched(&EdgeSearch::candidates),
+                  searched(&EdgeSearch::alphas), searched(&EdgeSearch::crossed),
+                  searched(&EdgeSearch::points), searched(&EdgeSearch::pointsOf),
+                  searched(&EdgeSearch::blockCounts));
   }
 
  private:
