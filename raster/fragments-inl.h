@@ -48,16 +48,12 @@ class Fragments {
       : tile_(tile), context_(*tile.context), lighting_(lighting), samples_(context_.samples.size()) {}
 
   /// Adds the pixels `which` of the vector at x, y of the tile, none of which has a complex material.
-  template <std::size_t kGroups>
-  HWY_INLINE void add(int x, int y, MI which, const SampledIds<kGroups>& ids) {
+  HWY_INLINE void add(int x, int y, MI which) {
     const I d;
-    const std::size_t to = pixels_;
-    for (std::size_t s = 0; s < ids.kSamples; ++s)
-      hn::StoreU(hn::Compress(ids.of[s], which), d, shown_[s] + to);
     const VI places = hn::Add(hn::ShiftLeft<kSubpixelBits>(hn::Iota(d, 0)),
                               hn::Set(d, (x << kSubpixelBits) + (y << kRowShift)));
-    hn::StoreU(hn::Compress(places, which), d, place_ + to);
-    pixels_ = to + hn::CountTrue(d, which);
+    hn::StoreU(hn::Compress(places, which), d, place_ + pixels_);
+    pixels_ += hn::CountTrue(d, which);
     if (pixels_ > kPixels - kLanes) finish();
   }
 
@@ -73,11 +69,12 @@ class Fragments {
   static constexpr std::size_t kSize = PointBatch::kSize, kPixels = 256;
   // A place in the tile: sub-pixels across, and down from this bit on. A fragment's tag has its sample's place, and above
   // it how many samples show its triangle, which are less than eight.
+  static constexpr int kStripBits = std::countr_zero(Tile::kStripWidth);
   static constexpr int kDownShift = 15, kRowShift = kDownShift + kSubpixelBits, kCountShift = 29;
 
   template <std::size_t kSamples>
   HWY_INLINE void finishAll() {
-    for (std::size_t s = 0; s < kSamples; ++s) hn::StoreU(hn::Set(I(), -1), I(), shown_[s] + pixels_);
+    setOffsets();
     std::size_t written = 0;
     for (std::size_t i = 0; i < pixels_; i += kLanes) {
       // Not full, so that what is expanded can be loaded as vectors.
@@ -99,9 +96,9 @@ class Fragments {
     const VI one = hn::Set(d, 1 << kCountShift), place = hn::Load(d, place_ + i);
     VI shown[kSamples], tag[kSamples], covered = hn::Zero(d);
     MI first[kSamples];  // pixels no sample of which before shows the same
+    loadShown(i, shown);
     for (std::size_t s = 0; s < kSamples; ++s) {
       const SamplePosition at = context_.samples[s];
-      shown[s] = hn::Load(d, shown_[s] + i);
       tag[s] = hn::Add(place, hn::Set(d, at.x + (at.y << kDownShift) + (1 << kCountShift)));
       first[s] = hn::Gt(shown[s], hn::Set(d, -1));
       covered = hn::IfThenElse(first[s], hn::Add(covered, hn::Set(d, 1)), covered);
@@ -122,6 +119,38 @@ class Fragments {
       count += hn::CountTrue(d, first[s]);
     }
     count_ = count;
+  }
+
+  // Tile::pixelOffset() of all pixels.
+  HWY_INLINE void setOffsets() {
+    const I d;
+    const VI strip = hn::Set(d, static_cast<std::int32_t>(tile_.strip)),
+             column = hn::Set(d, (1 << kStripBits) - 1);
+    for (std::size_t i = 0; i < pixels_; i += kLanes) {
+      const VI place = hn::Load(d, place_ + i), y = hn::ShiftRight<kRowShift>(place);
+      const VI x = hn::ShiftRight<kSubpixelBits>(hn::And(place, hn::Set(d, (1 << kDownShift) - 1)));
+      const VI inStrip = hn::Add(hn::And(x, column), hn::ShiftLeft<kStripBits>(y));
+      hn::Store(hn::Add(hn::Mul(hn::ShiftRight<kStripBits>(x), strip), inStrip), d, offset_ + i);
+    }
+    hn::StoreU(hn::Zero(d), d, offset_ + pixels_);
+  }
+
+  // What the samples of pixels show; of those beyond the last, nothing.
+  template <std::size_t kSamples>
+  HWY_INLINE void loadShown(std::size_t i, VI (&shown)[kSamples]) const {
+    const I d;
+    const MI inside = hn::FirstN(d, pixels_ - i);
+    for (std::size_t g = 0; g < kSamples / kGroup; ++g) {
+      const auto* const ids =
+          reinterpret_cast<const std::int32_t*>(tile_.ids.data()) + g * tile_.plane * kGroup;
+      const auto at = [&](std::size_t lane) {
+        return ids + static_cast<std::ptrdiff_t>(kGroup) * offset_[i + lane];
+      };
+      const VI rows[4] = {loadEveryFourth(d, 0, at), loadEveryFourth(d, 1, at), loadEveryFourth(d, 2, at),
+                          loadEveryFourth(d, 3, at)};
+      transpose(d, rows, shown[4 * g], shown[4 * g + 1], shown[4 * g + 2], shown[4 * g + 3]);
+    }
+    for (VI& ids : shown) ids = hn::IfThenElse(inside, ids, hn::Set(d, -1));
   }
 
   // Shades the fragments listed and writes their pixels [from, to).
@@ -341,9 +370,9 @@ class Fragments {
   const Lighting& lighting_;
   std::size_t samples_;
 
-  // Pixels that wait: their places and what their samples show.
+  // Places of the pixels that wait.
   std::size_t pixels_ = 0;
-  alignas(64) std::int32_t place_[kPixels], shown_[kMaxSamples][kPixels + kLanes];
+  alignas(64) std::int32_t place_[kPixels], offset_[kPixels + kLanes];
   // Of vectors of them: how many samples show something, where their fragments begin, and for each sample the pixels that
   // have one there.
   alignas(64) std::int32_t covered_[kPixels];

@@ -45,23 +45,9 @@ class Shading {
     if (tile_.isEmpty()) return fill();
     if (tile_.plainMaterial != nullptr) setMaterial(*tile_.plainMaterial, Base::kPlain);
     if (tile_.texturedMaterial != nullptr) setMaterial(*tile_.texturedMaterial, Base::kTextured);
-    const bool simple = samples_ == 1 && tile_.hasSoleMaterial() && !tile_.overlaid;
     // Down the strips, as pixels lie in memory.
-    for (int x = 0; x < tile_.width; x += Tile::kCellWidth) {
-      const int end = std::min(x + Tile::kCellWidth, tile_.width);
-      for (int y = 0; y < tile_.height; ++y) {
-        if (!tile_.isTouched(x, y))
-          for (int i = x; i < end; i += static_cast<int>(kLanes)) store(hn::Set(I(), background_), i, y);
-        else if (simple && end == x + Tile::kCellWidth)
-          for (int i = x; i < end; i += static_cast<int>(kLanes)) simpleBlock(i, y);
-        else if (samples_ == 1)
-          for (int i = x; i < end; i += static_cast<int>(kLanes)) block(i, y);
-        else if (samples_ == kGroup)
-          for (int i = x; i < end; i += static_cast<int>(kLanes)) sampledBlock<1>(i, y);
-        else
-          for (int i = x; i < end; i += static_cast<int>(kLanes)) sampledBlock<2>(i, y);
-      }
-    }
+    for (int x = 0; x < tile_.width; x += Tile::kCellWidth)
+      for (int y = 0; y < tile_.height; y += Tile::kCellHeight) shadeCell(x, y);
     flush();
     fragments_.finish();
     tile_.statistics.pixelsShaded += shaded_;
@@ -74,6 +60,23 @@ class Shading {
     return static_cast<std::int32_t>(encode(c.x, e) | static_cast<unsigned>(encode(c.y, e)) << 8U |
                                      static_cast<unsigned>(encode(c.z, e)) << 16U |
                                      static_cast<unsigned>(toByte(c.w)) << 24U);
+  }
+
+  HWY_INLINE void shadeCell(int left, int top) {
+    const int right = std::min(left + Tile::kCellWidth, tile_.width);
+    const int bottom = std::min(top + Tile::kCellHeight, tile_.height);
+    const bool simple = samples_ == 1 && tile_.hasSoleMaterial() && !tile_.overlaid;
+    for (int x = left; x < right; x += static_cast<int>(kLanes))
+      if (!tile_.isTouched(left, top))
+        for (int y = top; y < bottom; ++y) store(hn::Set(I(), background_), x, y);
+      else if (simple && right == left + Tile::kCellWidth)
+        for (int y = top; y < bottom; ++y) simpleBlock(x, y);
+      else if (samples_ == 1)
+        for (int y = top; y < bottom; ++y) block(x, y);
+      else if (samples_ == kGroup)
+        sampledBlocks<1>(x, top, bottom);
+      else
+        sampledBlocks<2>(x, top, bottom);
   }
 
   void fill() const {
@@ -113,32 +116,51 @@ class Shading {
     const MI whole = tile_.overlaid ? hn::And(inside, notBlended(x, y)) : inside;
     const MI nothing = hn::Eq(ids, hn::Set(d, -1));
     if (!hn::AllFalse(d, hn::And(nothing, whole))) store(hn::Set(d, background_), x, y);
-    MI left = hn::Or(hn::AndNot(whole, inside), pushSeen(x, y, hn::AndNot(nothing, whole), ids));
+    MI left = hn::AndNot(whole, inside);
+    if (const MI seen = hn::AndNot(nothing, whole); !hn::AllFalse(d, seen))
+      left = hn::Or(left, pushSeen(x, y, seen, ids));
     for (unsigned bits = bitsOf(left); bits != 0; bits &= bits - 1)
       shadePixelScalar(tile_, x + std::countr_zero(bits), y);
   }
 
-  // A vector of pixels with several samples.
+  // Vectors of pixels with several samples, one below the other. What they show is found out for all of them first: what
+  // follows from that is hard to foresee, and so would have to wait for each.
   template <std::size_t kGroups>
-  HWY_INLINE void sampledBlock(int x, int y) {
+  HWY_INLINE void sampledBlocks(int x, int top, int bottom) {
     const I d;
-    const SampledIds<kGroups> ids(tile_, x, y);
     const MI inside = hn::FirstN(d, static_cast<std::size_t>(tile_.width - x));
-    MI whole = hn::And(inside, ids.uniform());
-    if (tile_.overlaid) whole = hn::And(whole, notBlended(x, y));
-    const MI nothing = hn::And(whole, hn::Eq(ids.of[0], hn::Set(d, -1)));
-    if (!hn::AllFalse(d, nothing)) store(hn::Set(d, background_), x, y);
-    MI left = hn::AndNot(whole, inside);
-    left = hn::Or(left, pushSeen(x, y, hn::AndNot(nothing, whole), ids.of[0]));
-    if (hn::AllFalse(d, left)) return;
-    if (tile_.overlaid || !tile_.hasSoleMaterial()) left = lanesOf(leaveSome(bitsOf(left), x, y));
-    if (!hn::AllFalse(d, left)) fragments_.add<kGroups>(x, y, left, ids);
+    for (int y = top; y < bottom; ++y) {
+      const SampledIds<kGroups> ids(tile_, x, y);
+      Shown& shown = shown_[y - top];
+      shown.uniform = bitsOf(hn::And(inside, ids.uniform()));
+      shown.something = bitsOf(hn::Gt(ids.of[0], hn::Set(d, -1)));
+      hn::Store(ids.of[0], d, shown.first);
+    }
+    for (int y = top; y < bottom; ++y) sampledBlock(x, y, bitsOf(inside), shown_[y - top]);
+  }
+
+  // What pixels' samples show: all the same; the first one of them something, and what.
+  struct Shown {
+    unsigned uniform, something;
+    alignas(64) std::int32_t first[kLanes];
+  };
+
+  HWY_INLINE void sampledBlock(int x, int y, unsigned inside, const Shown& shown) {
+    const I d;
+    unsigned whole = shown.uniform;
+    if (tile_.overlaid) whole &= bitsOf(notBlended(x, y));
+    const unsigned seen = whole & shown.something;
+    if (seen != whole) store(hn::Set(d, background_), x, y);
+    unsigned left = inside & ~whole;
+    if (seen != 0) left |= bitsOf(pushSeen(x, y, lanesOf(seen), hn::Load(d, shown.first)));
+    if (left == 0) return;
+    if (tile_.overlaid || !tile_.hasSoleMaterial()) left = leaveSome(left, x, y);
+    if (left != 0) fragments_.add(x, y, lanesOf(left));
   }
 
   // Adds pixels whose samples show one triangle each to the points; returns what is left to others.
   HWY_INLINE MI pushSeen(int x, int y, MI seen, VI ids) {
     const MI none = hn::FirstN(I(), 0);
-    if (hn::AllFalse(I(), seen)) return none;
     if (tile_.plainMaterial != nullptr)
       push(x, y, seen);
     else if (tile_.texturedMaterial != nullptr)
@@ -366,6 +388,8 @@ class Shading {
   std::int32_t background_;
   Fragments fragments_;
   std::size_t samples_ = context_.samples.size(), shaded_ = 0;
+
+  Shown shown_[Tile::kCellHeight];
 
   // Points waiting to be shaded, all of one material.
   const Material* material_ = nullptr;

@@ -117,7 +117,7 @@ class Tile {
   bool isTouched(int x, int y) const {
     return ((touched_ >> (y / kCellHeight * 8 + x / kCellWidth)) & 1U) != 0;
   }
-  static constexpr int kCellWidth = 16;  ///< pixels are cleared that many at a time
+  static constexpr int kCellWidth = 16, kCellHeight = 8;  ///< pixels are cleared that many at a time
   static constexpr std::size_t kStripWidth = kCellWidth;
   /// The samples of a pixel that show a record.
   unsigned samplesOf(std::uint32_t id, int x, int y) const {
@@ -207,7 +207,7 @@ class Tile {
 
  private:
   // Samples are cleared when first needed, by cells: bit column + 8 · row of `touched_`.
-  static constexpr int kCellHeight = 8, kCellRows = 8;
+  static constexpr int kCellRows = 8;
   static constexpr std::uint64_t kFirstCells = 0x0101010101010101U;  // of all rows
   void clear(std::uint64_t cells);
   void setSoleMaterial();
