@@ -15,18 +15,27 @@ namespace HWY_NAMESPACE {
 
 #if HWY_TARGET != HWY_SCALAR
 
-/// Points to be shaded, up to `count`: rayAt() of their places in the window, normals, depths where lights need them,
-/// base colours; their colours; and what the steps of lighting hand on.
+struct Color {
+  VF r, g, b;
+};
+
+/// Where points are seen, rayAt() of lighting.h; their normals; and their depths where lights need them.
+struct PointVector {
+  VF rayX, rayY, normalX, normalY, normalZ, depth;
+};
+
+/// Up to `count` such points, their base colours, and their colours.
 struct PointBatch {
   static constexpr std::size_t kSize = 256;
   alignas(64) float rayX[kSize], rayY[kSize], normal[3][kSize], depth[kSize], base[3][kSize];
   alignas(64) float color[3][kSize];
-  alignas(64) float length[kSize], diffuse[kSize], shine[kSize];
   std::size_t count = 0;
-};
 
-struct Color {
-  VF r, g, b;
+  HWY_INLINE PointVector point(std::size_t i) const {
+    const F f;
+    return {hn::Load(f, rayX + i),      hn::Load(f, rayY + i),      hn::Load(f, normal[0] + i),
+            hn::Load(f, normal[1] + i), hn::Load(f, normal[2] + i), hn::Load(f, depth + i)};
+  }
 };
 
 /// power() of lighting.h, n >= 0.
@@ -60,90 +69,93 @@ class Lighting {
   /// Some light shines from a place: points need their depths.
   bool needsDepth() const { return needsDepth_; }
 
-  /// litColor() with the material's own emission.
-  void operator()(PointBatch& p, const Material& m) const {
+  /// Whether there is nothing but one directional white light, seen in perspective, and the material does not glow.
+  bool isSole(const Material& m) const {
+    return lights_.size() == 1 && lights_[0].kind == Light::Kind::kDirectional && isWhite(lights_[0]) &&
+           map_.perspective && !isEmissive(m);
+  }
+
+  /// litColor() with the material's own emission; where isSole() holds without any question that it answers.
+  template <bool kSole>
+  HWY_INLINE Color litColor(const PointVector& p, const Material& m, const Color& base) const {
     const F f;
-    for (std::size_t i = 0; i < p.count; i += kLanes) hn::Store(eyeLength(p, i), f, p.length + i);
+    const VF length = eyeLength(p, kSole || map_.perspective);
+    if constexpr (kSole)
+      return colorOf<true>(lights_[0], m, base, sharesOf<true>(lights_[0], m, p, length, true));
     // Sums begin with what need not be added.
-    bool first = m.emissive.x == 0.0F && m.emissive.y == 0.0F && m.emissive.z == 0.0F;
-    if (!first || lights_.empty())
-      for (int k = 0; k < 3; ++k)
-        for (std::size_t i = 0; i < p.count; i += kLanes)
-          hn::Store(hn::Set(f, m.emissive[k]), f, p.color[k] + i);
+    bool first = !isEmissive(m);
+    Color color{hn::Set(f, m.emissive.x), hn::Set(f, m.emissive.y), hn::Set(f, m.emissive.z)};
     for (const Light& light : lights_) {
-      if (light.kind == Light::Kind::kDirectional)
-        setShares<true>(light, m, p);
-      else
-        setShares<false>(light, m, p);
-      const bool white = light.color.x == 1.0F && light.color.y == 1.0F && light.color.z == 1.0F;
-      if (white && first)
-        addColors<true, true>(light, m, p);
-      else if (first)
-        addColors<false, true>(light, m, p);
-      else
-        addColors<false, false>(light, m, p);
+      const Shares shares = light.kind == Light::Kind::kDirectional
+                                ? sharesOf<true>(light, m, p, length, map_.perspective)
+                                : sharesOf<false>(light, m, p, length, map_.perspective);
+      const Color part =
+          isWhite(light) ? colorOf<true>(light, m, base, shares) : colorOf<false>(light, m, base, shares);
+      color =
+          first ? part : Color{hn::Add(color.r, part.r), hn::Add(color.g, part.g), hn::Add(color.b, part.b)};
       first = false;
     }
+    return color;
   }
 
  private:
-  HWY_INLINE VF eyeLength(const PointBatch& p, std::size_t i) const {
-    const F f;
-    const VF one = hn::Set(f, 1.0F), x = hn::Load(f, p.rayX + i), y = hn::Load(f, p.rayY + i);
-    return map_.perspective ? hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), one)) : one;
+  // How much of a light the base colour and the highlight send on.
+  struct Shares {
+    VF diffuse, shine;
+  };
+
+  static bool isWhite(const Light& light) {
+    return light.color.x == 1.0F && light.color.y == 1.0F && light.color.z == 1.0F;
+  }
+  static bool isEmissive(const Material& m) {
+    return m.emissive.x != 0.0F || m.emissive.y != 0.0F || m.emissive.z != 0.0F;
   }
 
-  // How much of a light the points' bases and highlights send on.
+  HWY_INLINE static VF eyeLength(const PointVector& p, bool perspective) {
+    const VF one = hn::Set(F(), 1.0F);
+    return perspective ? hn::Sqrt(hn::Add(hn::Add(hn::Mul(p.rayX, p.rayX), hn::Mul(p.rayY, p.rayY)), one))
+                       : one;
+  }
+
   template <bool kDirectional>
-  HWY_INLINE void setShares(const Light& light, const Material& m, PointBatch& p) const {
+  HWY_INLINE Shares sharesOf(const Light& light, const Material& m, const PointVector& p, VF length,
+                             bool perspective) const {
     const F f;
     const VF one = hn::Set(f, 1.0F), zero = hn::Zero(f);
-    const VF ambient = hn::Set(f, light.ambient), diffuse = hn::Set(f, light.diffuse);
-    const bool perspective = map_.perspective, odd = (m.shininess & 1) != 0;
-    const int half = m.shininess >> 1;
+    const VF nx = p.normalX, ny = p.normalY, nz = p.normalZ;
+    // The vector to the eye is (-x, -y, 1).
+    const VF x = perspective ? p.rayX : zero, y = perspective ? p.rayY : zero;
     Incoming in{hn::Set(f, light.toLight.x), hn::Set(f, light.toLight.y), hn::Set(f, light.toLight.z), one};
-    for (std::size_t i = 0; i < p.count; i += kLanes) {
-      const VF nx = hn::Load(f, p.normal[0] + i), ny = hn::Load(f, p.normal[1] + i),
-               nz = hn::Load(f, p.normal[2] + i), length = hn::Load(f, p.length + i);
-      // The vector to the eye is (-x, -y, 1).
-      const VF x = perspective ? hn::Load(f, p.rayX + i) : zero,
-               y = perspective ? hn::Load(f, p.rayY + i) : zero;
-      if constexpr (!kDirectional) in = incoming(light, placeOf(p, i));
-      const VF nn = hn::Max(dot3(nx, nx, ny, ny, nz, nz), hn::Set(f, 1e-37F));
-      const VF nv = hn::Sub(nz, hn::Add(hn::Mul(nx, x), hn::Mul(ny, y)));
-      const VF ln = dot3(nx, in.x, ny, in.y, nz, in.z);
-      const VF lv = hn::Sub(in.z, hn::Add(hn::Mul(in.x, x), hn::Mul(in.y, y)));
-      const VF hh = hn::Max(hn::Mul(hn::Add(length, length), hn::Add(length, lv)), hn::Set(f, 1e-12F));
-      const VF nh = hn::Max(hn::Add(hn::Mul(ln, length), nv), zero);
-      const VF inverse = hn::Div(one, hn::Mul(nn, hh));
-      const VF nl = hn::Max(hn::Mul(ln, hn::Sqrt(hn::Mul(hh, inverse))), zero);
-      const VF square = hn::Min(hn::Mul(hn::Mul(nh, nh), inverse), one);
-      VF shine = powerOf(square, half);
-      if (odd) shine = hn::Mul(shine, hn::Sqrt(square));
-      VF lit = hn::Mul(diffuse, nl);
-      if constexpr (!kDirectional) {
-        lit = hn::Mul(lit, in.share);
-        shine = hn::Mul(shine, in.share);
-      }
-      hn::Store(hn::Add(ambient, lit), f, p.diffuse + i);
-      hn::Store(shine, f, p.shine + i);
+    if constexpr (!kDirectional) in = incoming(light, placeOf(p));
+    const VF nn = hn::Max(dot3(nx, nx, ny, ny, nz, nz), hn::Set(f, 1e-37F));
+    const VF nv = hn::Sub(nz, hn::Add(hn::Mul(nx, x), hn::Mul(ny, y)));
+    const VF ln = dot3(nx, in.x, ny, in.y, nz, in.z);
+    const VF lv = hn::Sub(in.z, hn::Add(hn::Mul(in.x, x), hn::Mul(in.y, y)));
+    const VF hh = hn::Max(hn::Mul(hn::Add(length, length), hn::Add(length, lv)), hn::Set(f, 1e-12F));
+    const VF nh = hn::Max(hn::Add(hn::Mul(ln, length), nv), zero);
+    const VF inverse = hn::Div(one, hn::Mul(nn, hh));
+    const VF nl = hn::Max(hn::Mul(ln, hn::Sqrt(hn::Mul(hh, inverse))), zero);
+    const VF square = hn::Min(hn::Mul(hn::Mul(nh, nh), inverse), one);
+    VF shine = powerOf(square, m.shininess >> 1), lit = hn::Mul(hn::Set(f, light.diffuse), nl);
+    if ((m.shininess & 1) != 0) shine = hn::Mul(shine, hn::Sqrt(square));
+    if constexpr (!kDirectional) {
+      lit = hn::Mul(lit, in.share);
+      shine = hn::Mul(shine, in.share);
     }
+    return {hn::Add(hn::Set(f, light.ambient), lit), shine};
   }
 
-  // The light's part of the colours.
-  template <bool kWhite, bool kFirst>
-  HWY_INLINE static void addColors(const Light& light, const Material& m, PointBatch& p) {
+  // The light's part of the colour.
+  template <bool kWhite>
+  HWY_INLINE static Color colorOf(const Light& light, const Material& m, const Color& base,
+                                  const Shares& shares) {
     const F f;
-    for (int k = 0; k < 3; ++k) {
-      const VF color = hn::Set(f, light.color[k]), specular = hn::Set(f, m.specular[k]);
-      for (std::size_t i = 0; i < p.count; i += kLanes) {
-        VF sum = hn::Add(hn::Mul(hn::Load(f, p.base[k] + i), hn::Load(f, p.diffuse + i)),
-                         hn::Mul(specular, hn::Load(f, p.shine + i)));
-        if constexpr (!kWhite) sum = hn::Mul(color, sum);
-        if constexpr (!kFirst) sum = hn::Add(hn::Load(f, p.color[k] + i), sum);
-        hn::Store(sum, f, p.color[k] + i);
-      }
-    }
+    const auto channel = [&](VF value, float specular, float tint) HWY_ATTR {
+      const VF sum = hn::Add(hn::Mul(value, shares.diffuse), hn::Mul(hn::Set(f, specular), shares.shine));
+      return kWhite ? sum : hn::Mul(hn::Set(f, tint), sum);
+    };
+    return {channel(base.r, m.specular.x, light.color.x), channel(base.g, m.specular.y, light.color.y),
+            channel(base.b, m.specular.z, light.color.z)};
   }
 
   struct Place {
@@ -151,10 +163,9 @@ class Lighting {
   };
 
   // Where points are in view space; ScreenMap::viewDepth().
-  HWY_INLINE Place placeOf(const PointBatch& p, std::size_t i) const {
+  HWY_INLINE Place placeOf(const PointVector& p) const {
     const F f;
-    const VF x = hn::Load(f, p.rayX + i), y = hn::Load(f, p.rayY + i);
-    const VF value = hn::Max(hn::Load(f, p.depth + i), hn::Set(f, map_.farDepth));
+    const VF x = p.rayX, y = p.rayY, value = hn::Max(p.depth, hn::Set(f, map_.farDepth));
     if (map_.perspective) {
       const VF depth = hn::Div(hn::Set(f, 1.0F), value);
       return {hn::Mul(x, depth), hn::Mul(y, depth), hn::Neg(depth)};

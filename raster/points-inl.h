@@ -1,7 +1,4 @@
 // Points to be shaded, a few vectors of them at a time, and the colours that follow. Definition: surface.cpp, lighting.h.
-//
-// The light is computed step by step, each step over all points: the steps' chains of dependent roots and divisions are
-// then short enough for the processor to work on several vectors at once.
 #if defined(LIMN_RASTER_POINTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef LIMN_RASTER_POINTS_INL_H_
 #undef LIMN_RASTER_POINTS_INL_H_
@@ -43,12 +40,23 @@ HWY_INLINE void storePixels(VI color, MI lanes, std::uint8_t* to) {
 }
 
 /// Linear colours of points that have one material, `points.base` being what vertex colours and textures make of it.
-inline void shadePoints(PointBatch& points, const Material& m, const Lighting& lighting) {
+template <bool kSole>
+inline void lightPoints(PointBatch& points, const Material& m, const Lighting& lighting) {
   const F f;
-  if (!m.unlit) return lighting(points, m);
-  for (int k = 0; k < 3; ++k)
-    for (std::size_t i = 0; i < points.count; i += kLanes)
-      hn::Store(hn::Load(f, points.base[k] + i), f, points.color[k] + i);
+  for (std::size_t i = 0; i < points.count; i += kLanes) {
+    const Color base{hn::Load(f, points.base[0] + i), hn::Load(f, points.base[1] + i),
+                     hn::Load(f, points.base[2] + i)};
+    const Color color = m.unlit ? base : lighting.litColor<kSole>(points.point(i), m, base);
+    hn::Store(color.r, f, points.color[0] + i);
+    hn::Store(color.g, f, points.color[1] + i);
+    hn::Store(color.b, f, points.color[2] + i);
+  }
+}
+inline void shadePoints(PointBatch& points, const Material& m, const Lighting& lighting) {
+  if (lighting.isSole(m) && !m.unlit)
+    lightPoints<true>(points, m, lighting);
+  else
+    lightPoints<false>(points, m, lighting);
 }
 
 /// Points' base colours: the material's, times vertex colours.
@@ -75,11 +83,8 @@ HWY_INLINE void addTexels(const Material& m, TextureBatch& batch, PointBatch& po
 
 /// Fills a batch's base colours with a material's that has neither vertex colours nor a texture.
 inline void setPlainBase(const Material& m, PointBatch& points) {
-  const F f;
-  for (int k = 0; k < 3; ++k) {
-    const VF value = hn::Mul(hn::Set(f, m.baseColor[k]), hn::Set(f, 1.0F));
-    for (std::size_t i = 0; i < PointBatch::kSize; i += kLanes) hn::Store(value, f, points.base[k] + i);
-  }
+  const VF one = hn::Set(F(), 1.0F);
+  for (std::size_t i = 0; i < points.count; i += kLanes) setBase(m, {one, one, one}, points, i);
 }
 #endif
 

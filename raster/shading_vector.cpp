@@ -43,7 +43,6 @@ class Shading {
 
   void run() {
     if (tile_.isEmpty()) return fill();
-    if (tile_.plainMaterial != nullptr) setMaterial(*tile_.plainMaterial, Base::kPlain);
     if (tile_.texturedMaterial != nullptr) setMaterial(*tile_.texturedMaterial, Base::kTextured);
     // Down the strips, as pixels lie in memory.
     for (int x = 0; x < tile_.width; x += Tile::kCellWidth)
@@ -103,7 +102,7 @@ class Shading {
     if (hn::AllFalse(d, seen))
       hn::StoreU(hn::Set(d, background_), d, reinterpret_cast<std::int32_t*>(pixelAt(x, y)));
     else if (tile_.plainMaterial != nullptr)
-      push(x, y, seen, true);
+      shadePlain(*tile_.plainMaterial, x, y, seen, true);
     else
       pushTextured(x, y, ids, seen, true);
   }
@@ -158,11 +157,11 @@ class Shading {
     if (left != 0) fragments_.add(x, y, lanesOf(left));
   }
 
-  // Adds pixels whose samples show one triangle each to the points; returns what is left to others.
+  // Shades pixels whose samples show one triangle each, or adds them to the points; returns what is left to others.
   HWY_INLINE MI pushSeen(int x, int y, MI seen, VI ids) {
     const MI none = hn::FirstN(I(), 0);
     if (tile_.plainMaterial != nullptr)
-      push(x, y, seen);
+      shadePlain(*tile_.plainMaterial, x, y, seen);
     else if (tile_.texturedMaterial != nullptr)
       pushTextured(x, y, ids, seen);
     else
@@ -217,35 +216,62 @@ class Shading {
     std::copy(bytes, bytes + static_cast<std::ptrdiff_t>(4 * (tile_.width - x)), to);
   }
 
-  // Where the points' base colours come from: the material alone, its texture, or vertex colours and perhaps a texture.
-  enum class Base { kPlain, kTextured, kColored };
+  // Where the points' base colours come from: a texture, or vertex colours and perhaps a texture.
+  enum class Base { kTextured, kColored };
 
   void setMaterial(const Material& m, Base base) {
     if (material_ == &m && base == base_) return;
     flush();
     material_ = &m;
     base_ = base;
-    if (base == Base::kPlain) setPlainBase(m, points_);
   }
 
-  // Adds the pixels in `lanes` to the points waiting to be shaded; over background, the others are written as such.
+  HWY_INLINE PointVector pointAt(int x, int y) const {
+    const F f;
+    const std::size_t o = tile_.pixelOffset(x, y);
+    PointVector p{
+        hn::Load(f, rayX_ + x), hn::Set(f, rayY_[y]), hn::Zero(f), hn::Zero(f), hn::Zero(f), hn::Zero(f)};
+    if (samples_ > 1) {
+      loadColumns(f, &tile_.centers[4 * o], p.normalX, p.normalY, p.normalZ, p.depth);
+    } else {
+      p.normalX = hn::LoadU(f, tile_.normal[0].data() + o),
+      p.normalY = hn::LoadU(f, tile_.normal[1].data() + o);
+      p.normalZ = hn::LoadU(f, tile_.normal[2].data() + o), p.depth = hn::LoadU(f, tile_.depth.data() + o);
+    }
+    return p;
+  }
+
+  // The pixels in `lanes` show a material that has one base colour; over background, the others are written as such.
+  template <bool kSole>
+  HWY_INLINE void shadePlainBy(const Material& m, int x, int y, MI lanes, bool overBackground = false) {
+    const F f;
+    const Color base{hn::Set(f, m.baseColor.x), hn::Set(f, m.baseColor.y), hn::Set(f, m.baseColor.z)};
+    const Color color = kSole     ? lighting_.litColor<true>(pointAt(x, y), m, base)
+                        : m.unlit ? base
+                                  : lighting_.litColor<false>(pointAt(x, y), m, base);
+    shaded_ += hn::CountTrue(f, hn::RebindMask(f, lanes));
+    write(packedOf(color, hn::Set(I(), 255), context_.frame.encoding), pixelAt(x, y), lanes, overBackground);
+  }
+
+  HWY_INLINE void shadePlain(const Material& m, int x, int y, MI lanes, bool overBackground = false) {
+    if (isSole_)
+      shadePlainBy<true>(m, x, y, lanes, overBackground);
+    else
+      shadePlainBy<false>(m, x, y, lanes, overBackground);
+  }
+
+  // Adds the pixels in `lanes` to the points waiting to be shaded, as above.
   HWY_INLINE std::size_t push(int x, int y, MI lanes, bool overBackground = false) {
     const F f;
     if (points_.count == PointBatch::kSize) flush();
-    const std::size_t o = tile_.pixelOffset(x, y), n = points_.count;
-    hn::Store(hn::Load(f, rayX_ + x), f, points_.rayX + n);
-    hn::Store(hn::Set(f, rayY_[y]), f, points_.rayY + n);
-    VF nx, ny, nz, depth;
-    if (samples_ > 1) {
-      loadColumns(f, &tile_.centers[4 * o], nx, ny, nz, depth);
-    } else {
-      nx = hn::LoadU(f, tile_.normal[0].data() + o), ny = hn::LoadU(f, tile_.normal[1].data() + o);
-      nz = hn::LoadU(f, tile_.normal[2].data() + o), depth = hn::LoadU(f, tile_.depth.data() + o);
-    }
-    hn::Store(nx, f, points_.normal[0] + n);
-    hn::Store(ny, f, points_.normal[1] + n);
-    hn::Store(nz, f, points_.normal[2] + n);
-    hn::Store(depth, f, points_.depth + n);
+    const std::size_t n = points_.count;
+    const PointVector p = pointAt(x, y);
+    hn::Store(p.rayX, f, points_.rayX + n);
+    hn::Store(p.rayY, f, points_.rayY + n);
+    hn::Store(p.normalX, f, points_.normal[0] + n);
+    hn::Store(p.normalY, f, points_.normal[1] + n);
+    hn::Store(p.normalZ, f, points_.normal[2] + n);
+    hn::Store(p.depth, f, points_.depth + n);
     const unsigned bits = bitsOf(lanes);
     places_[n / kLanes] = {pixelAt(x, y), bits, overBackground};
     shaded_ += static_cast<std::size_t>(std::popcount(bits));
@@ -277,7 +303,8 @@ class Shading {
     for (std::size_t i = 0; i < points_.count; i += kLanes) {
       const Color color{hn::Load(f, points_.color[0] + i), hn::Load(f, points_.color[1] + i),
                         hn::Load(f, points_.color[2] + i)};
-      write(packedOf(color, opaque, kEncoding), places_[i / kLanes]);
+      const Place& at = places_[i / kLanes];
+      write(packedOf(color, opaque, kEncoding), at.to, lanesOf(at.lanes), at.overBackground);
     }
   }
 
@@ -287,12 +314,10 @@ class Shading {
     bool overBackground;
   };
 
-  HWY_INLINE void write(VI color, const Place& at) const {
+  HWY_INLINE void write(VI color, std::uint8_t* to, MI lanes, bool overBackground) const {
     const I d;
-    const MI lanes = lanesOf(at.lanes);
-    if (!at.overBackground) return storePixels(color, lanes, at.to);
-    hn::StoreU(hn::IfThenElse(lanes, color, hn::Set(d, background_)), d,
-               reinterpret_cast<std::int32_t*>(at.to));
+    if (!overBackground) return storePixels(color, lanes, to);
+    hn::StoreU(hn::IfThenElse(lanes, color, hn::Set(d, background_)), d, reinterpret_cast<std::int32_t*>(to));
   }
 
   // 1/q of points.
@@ -358,9 +383,12 @@ class Shading {
         complex = hn::Or(complex, mine);
         continue;
       }
-      setMaterial(*material, plain ? Base::kPlain : Base::kColored);
+      if (plain) {
+        shadePlain(*material, x, y, mine);
+        continue;
+      }
+      setMaterial(*material, Base::kColored);
       const std::size_t n = push(x, y, mine);
-      if (plain) continue;
       const VF w = distancesOf(n);
       setBase(*material, attributes.color(px, w), points_, n);
       if (material->baseColorTexture != nullptr)
@@ -393,6 +421,8 @@ class Shading {
 
   // Points waiting to be shaded, all of one material.
   const Material* material_ = nullptr;
+  bool isSole_ =
+      tile_.plainMaterial != nullptr && lighting_.isSole(*tile_.plainMaterial) && !tile_.plainMaterial->unlit;
   alignas(64) float rayX_[128 + 16], rayY_[64 + 16];  // of the tile's columns and rows
   Base base_ = Base::kColored;
   PointBatch points_;
