@@ -216,11 +216,11 @@ class Shading {
     std::copy(bytes, bytes + static_cast<std::ptrdiff_t>(4 * (tile_.width - x)), to);
   }
 
-  // Where the points' base colours come from: a texture, or vertex colours and perhaps a texture.
-  enum class Base { kTextured, kColored };
+  // Where the points' base colours come from: a texture, or vertex colours and perhaps a texture; or they are lit already.
+  enum class Base { kTextured, kColored, kLit };
 
   void setMaterial(const Material& m, Base base) {
-    if (material_ == &m && base == base_) return;
+    if (base == base_ && (material_ == &m || base == Base::kLit)) return;
     flush();
     material_ = &m;
     base_ = base;
@@ -242,29 +242,50 @@ class Shading {
   }
 
   // The pixels in `lanes` show a material that has one base colour; over background, the others are written as such.
-  template <bool kSole>
-  HWY_INLINE void shadePlainBy(const Material& m, int x, int y, MI lanes, bool overBackground = false) {
-    const F f;
-    const Color base{hn::Set(f, m.baseColor.x), hn::Set(f, m.baseColor.y), hn::Set(f, m.baseColor.z)};
-    const Color color = kSole     ? lighting_.litColor<true>(pointAt(x, y), m, base)
-                        : m.unlit ? base
-                                  : lighting_.litColor<false>(pointAt(x, y), m, base);
-    shaded_ += hn::CountTrue(f, hn::RebindMask(f, lanes));
-    write(packedOf(color, hn::Set(I(), 255), context_.frame.encoding), pixelAt(x, y), lanes, overBackground);
+  HWY_INLINE void shadePlain(const Material& m, int x, int y, MI lanes, bool overBackground = false) {
+    if (!isSole_ || context_.frame.encoding != Encoding::kNone)
+      return lightPlain(m, x, y, lanes, overBackground);
+    shaded_ += hn::CountTrue(I(), lanes);
+    const Color color = lighting_.litColor<true>(pointAt(x, y), m, plainBase(m));
+    const VI pixels = packedOf(color, hn::Set(I(), 255), Encoding::kNone);
+    write(pixels, pixelAt(x, y), lanes, overBackground);
   }
 
-  HWY_INLINE void shadePlain(const Material& m, int x, int y, MI lanes, bool overBackground = false) {
-    if (isSole_)
-      shadePlainBy<true>(m, x, y, lanes, overBackground);
-    else
-      shadePlainBy<false>(m, x, y, lanes, overBackground);
+  // The same where lights or encoding take longer: the points wait to be encoded together, a chain of roots of its own.
+  HWY_NOINLINE void lightPlain(const Material& m, int x, int y, MI lanes, bool overBackground) {
+    const F f;
+    setMaterial(m, Base::kLit);
+    const std::size_t n = keepPlace(x, y, lanes, overBackground);
+    const PointVector p = pointAt(x, y);
+    const Color base = plainBase(m);
+    const Color color = isSole_   ? lighting_.litColor<true>(p, m, base)
+                        : m.unlit ? base
+                                  : lighting_.litColor<false>(p, m, base);
+    hn::Store(color.r, f, points_.color[0] + n);
+    hn::Store(color.g, f, points_.color[1] + n);
+    hn::Store(color.b, f, points_.color[2] + n);
+  }
+
+  HWY_INLINE static Color plainBase(const Material& m) {
+    const F f;
+    return {hn::Set(f, m.baseColor.x), hn::Set(f, m.baseColor.y), hn::Set(f, m.baseColor.z)};
+  }
+
+  // Where the next vector of waiting points goes: returns its place among them.
+  HWY_INLINE std::size_t keepPlace(int x, int y, MI lanes, bool overBackground) {
+    if (points_.count == PointBatch::kSize) flush();
+    const std::size_t n = points_.count;
+    const unsigned bits = bitsOf(lanes);
+    places_[n / kLanes] = {pixelAt(x, y), bits, overBackground};
+    shaded_ += static_cast<std::size_t>(std::popcount(bits));
+    points_.count = n + kLanes;
+    return n;
   }
 
   // Adds the pixels in `lanes` to the points waiting to be shaded, as above.
   HWY_INLINE std::size_t push(int x, int y, MI lanes, bool overBackground = false) {
     const F f;
-    if (points_.count == PointBatch::kSize) flush();
-    const std::size_t n = points_.count;
+    const std::size_t n = keepPlace(x, y, lanes, overBackground);
     const PointVector p = pointAt(x, y);
     hn::Store(p.rayX, f, points_.rayX + n);
     hn::Store(p.rayY, f, points_.rayY + n);
@@ -272,10 +293,6 @@ class Shading {
     hn::Store(p.normalY, f, points_.normal[1] + n);
     hn::Store(p.normalZ, f, points_.normal[2] + n);
     hn::Store(p.depth, f, points_.depth + n);
-    const unsigned bits = bitsOf(lanes);
-    places_[n / kLanes] = {pixelAt(x, y), bits, overBackground};
-    shaded_ += static_cast<std::size_t>(std::popcount(bits));
-    points_.count = n + kLanes;
     return n;
   }
 
@@ -288,7 +305,7 @@ class Shading {
     } else if (base_ == Base::kColored && material_->baseColorTexture != nullptr) {
       addTexels<true>(*material_, texture_, points_);
     }
-    shadePoints(points_, *material_, lighting_);
+    if (base_ != Base::kLit) shadePoints(points_, *material_, lighting_);
     if (context_.frame.encoding == Encoding::kSrgb)
       writePoints<Encoding::kSrgb>();
     else
