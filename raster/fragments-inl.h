@@ -52,7 +52,7 @@ class Fragments {
     const I d;
     const VI places = hn::Add(hn::ShiftLeft<kSubpixelBits>(hn::Iota(d, 0)),
                               hn::Set(d, (x << kSubpixelBits) + (y << kRowShift)));
-    hn::StoreU(hn::Compress(places, which), d, place_ + pixels_);
+    hn::StoreU(compressed(places, which), d, place_ + pixels_);
     pixels_ += hn::CountTrue(d, which);
     if (pixels_ > kPixels - kLanes) finish();
   }
@@ -113,8 +113,8 @@ class Fragments {
     std::size_t count = count_;
     begin_[i / kLanes] = count;
     for (std::size_t s = 0; s < kSamples; ++s) {
-      hn::StoreU(hn::Compress(shown[s], first[s]), d, listedId_ + count);
-      hn::StoreU(hn::Compress(tag[s], first[s]), d, listedTag_ + count);
+      hn::StoreU(compressed(shown[s], first[s]), d, listedId_ + count);
+      hn::StoreU(compressed(tag[s], first[s]), d, listedTag_ + count);
       first_[s][i / kLanes] = bitsOf(first[s]);
       count += hn::CountTrue(d, first[s]);
     }

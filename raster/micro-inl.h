@@ -1,5 +1,5 @@
-// Triangles whose boxes are at most 3 × 3 pixels, a vector of triangles at a time. Definition: drawTriangle in
-// visibility.cpp.
+// Triangles whose boxes are at most 4 × 4 pixels of one sample or 3 × 3 of several, a vector of triangles at a time.
+// Definition: drawTriangle in visibility.cpp.
 #if defined(LIMN_RASTER_MICRO_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef LIMN_RASTER_MICRO_INL_H_
 #undef LIMN_RASTER_MICRO_INL_H_
@@ -7,6 +7,7 @@
 #define LIMN_RASTER_MICRO_INL_H_
 #endif
 
+#include <algorithm>
 #include <bit>
 
 #include "raster/cluster-inl.h"
@@ -18,7 +19,9 @@ namespace HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 /// Micro triangles and the depths of their corners.
 struct MicroQueue : TriangleQueue {
-  static constexpr std::int32_t kReach = 2;  ///< their last pixels are at most this far from the first
+  /// Their last pixels are at most this far from the first. Larger ones are drawn sooner one by one, and with several
+  /// samples the more so, since what they cover here is written sample by sample.
+  static constexpr std::int32_t kReach = kLanes == 16 ? 3 : 2, kReachOfSamples = 2;
   alignas(64) float depth[3][kSize];
 };
 
@@ -79,8 +82,8 @@ class Micro {
           const VF z = hn::Add(zRow, hn::Mul(slopeX, hn::ConvertTo(f, dx)));
           const auto place =
               static_cast<std::int32_t>(s << kSampleShift) | j << kRowShift | c << kColumnShift;
-          hn::StoreU(hn::Compress(z, hn::RebindMask(f, covered)), f, depth_ + listed_);
-          hn::StoreU(hn::Compress(hn::Or(ramp, hn::Set(d, place)), covered), d, place_ + listed_);
+          hn::StoreU(compressed(z, covered), f, depth_ + listed_);
+          hn::StoreU(compressed(hn::Or(ramp, hn::Set(d, place)), covered), d, place_ + listed_);
           listed_ += hn::CountTrue(d, covered);
           seen = hn::Or(seen, covered);
         }
@@ -161,7 +164,10 @@ class Micro {
 
   // A listed sample's place: its triangle's lane, and where in the triangle's box it is.
   static constexpr int kColumnShift = 4, kRowShift = 6, kSampleShift = 8;
-  static constexpr std::size_t kPixels = (MicroQueue::kReach + 1) * (MicroQueue::kReach + 1);
+  static constexpr std::size_t kOneSampled = (MicroQueue::kReach + 1) * (MicroQueue::kReach + 1);
+  static constexpr std::size_t kSampled =
+      (MicroQueue::kReachOfSamples + 1) * (MicroQueue::kReachOfSamples + 1) * kMaxSamples;
+  static constexpr std::size_t kMost = std::max(kOneSampled, kSampled);
 
   Tile& tile_;
   bool severalSamples_;
@@ -176,8 +182,8 @@ class Micro {
   std::uint32_t id_[kLanes];
   // The samples that they cover.
   std::size_t listed_ = 0;
-  alignas(64) float depth_[(kPixels * kMaxSamples + 1) * kLanes];
-  alignas(64) std::int32_t place_[(kPixels * kMaxSamples + 1) * kLanes];
+  alignas(64) float depth_[(kMost + 1) * kLanes];
+  alignas(64) std::int32_t place_[(kMost + 1) * kLanes];
 };
 #endif
 

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <type_traits>
 #include <utility>
 
@@ -65,6 +66,8 @@ HWY_INLINE void forEach(std::index_sequence<kIndices...> /*indices*/, const Body
 HWY_INLINE unsigned bitsOf(MI lanes) {
 #if HWY_TARGET <= HWY_AVX3
   return lanes.raw;
+#elif HWY_TARGET <= HWY_AVX2
+  return static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(lanes.raw)));
 #else
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(I(), lanes, bits);
@@ -79,6 +82,40 @@ HWY_INLINE MI lanesOf(unsigned lanes) {
 #else
   const std::uint8_t bits[8] = {static_cast<std::uint8_t>(lanes), static_cast<std::uint8_t>(lanes >> 8U)};
   return hn::LoadMaskBits(I(), bits);
+#endif
+}
+
+#if HWY_TARGET > HWY_AVX3
+/// For each set of lanes: its lanes one after the other, and how many of them come before each lane.
+struct LaneSets {
+  static_assert(kLanes <= 8);
+  std::uint8_t lanes[1U << kLanes][kLanes], before[1U << kLanes][kLanes];
+};
+inline constexpr LaneSets kLaneSets = [] {
+  LaneSets all{};
+  for (std::size_t set = 0; set < std::size(all.lanes); ++set)
+    for (std::size_t lane = 0, count = 0; lane < kLanes; ++lane) {
+      all.before[set][lane] = static_cast<std::uint8_t>(count < kLanes ? count : 0);
+      if ((set >> lane & 1U) != 0) all.lanes[set][count++] = static_cast<std::uint8_t>(lane);
+    }
+  return all;
+}();
+
+/// The numbers of `from`, picked by their numbers.
+template <class V>
+HWY_INLINE V picked(V from, const std::uint8_t* which) {
+  const hn::DFromV<V> d;
+  return hn::TableLookupLanes(from, hn::IndicesFromVec(d, hn::PromoteTo(I(), hn::LoadU(U8(), which))));
+}
+#endif
+
+/// The numbers in the lanes of a mask, one after the other.
+template <class V>
+HWY_INLINE V compressed(V v, MI lanes) {
+#if HWY_TARGET == HWY_AVX2  // g++ makes hn::Compress() copy its table at each call
+  return picked(v, kLaneSets.lanes[bitsOf(lanes)]);
+#else
+  return hn::Compress(v, hn::RebindMask(hn::DFromV<V>(), lanes));
 #endif
 }
 
@@ -141,9 +178,8 @@ HWY_INLINE VF expanded(const float* from, unsigned lanes) {
 #if HWY_TARGET <= HWY_AVX3
   return VF{_mm512_maskz_expand_ps(static_cast<__mmask16>(lanes), _mm512_loadu_ps(from))};
 #else
-  alignas(64) float to[kLanes] = {};
-  for (; lanes != 0; lanes &= lanes - 1) to[std::countr_zero(lanes)] = *from++;
-  return hn::Load(F(), to);
+  const VF spread = picked(hn::LoadU(F(), from), kLaneSets.before[lanes]);
+  return hn::IfThenElseZero(hn::RebindMask(F(), lanesOf(lanes)), spread);
 #endif
 }
 #endif

@@ -2,7 +2,7 @@
 //
 // Based on: S. Laine, T. Karras, "High-performance software rasterization on GPUs", 2011 (size classes);
 // M. Abrash, "Rasterization on Larrabee", 2009.
-// Differs in: a cluster's triangles are culled a vector at a time; of what is left, boxes of at most 3 × 3 pixels are
+// Differs in: a cluster's triangles are culled a vector at a time; of what is left, boxes of at most 4 × 4 pixels are
 // drawn a vector of triangles at a time, all others a vector of pixels at a time, column by column of that width.
 #include "raster/setup.h"
 #include "raster/surface.h"
@@ -201,16 +201,17 @@ class Visibility {
   HWY_INLINE void queueBySize(const Candidates& c, VI tag) {
     const I d;
     const F f;
-    const MI tiny = hn::And(atMost(hn::Sub(c.x.last, c.x.first), hn::Set(d, MicroQueue::kReach)),
-                            atMost(hn::Sub(c.y.last, c.y.first), hn::Set(d, MicroQueue::kReach)));
+    const VI reach = hn::Set(d, tile_.hasSeveralSamples() ? MicroQueue::kReachOfSamples : MicroQueue::kReach);
+    const MI tiny =
+        hn::And(atMost(hn::Sub(c.x.last, c.x.first), reach), atMost(hn::Sub(c.y.last, c.y.first), reach));
     const MI rows = hn::AndNot(tiny, c.live), micro = hn::And(tiny, c.live);
     if (!hn::AllFalse(d, rows)) enqueue(c, tag, rows, rowQueue_);
     if (hn::AllFalse(d, micro)) return;
     const float* const depth = cluster_.block->depth;
     const VF az = c.a(f, depth), bz = c.b(f, depth), cz = c.c(f, depth);
-    const MF negativeF = hn::RebindMask(f, c.negative), microF = hn::RebindMask(f, micro);
+    const MF negativeF = hn::RebindMask(f, c.negative);
     const auto putDepth = [&](int k, VF v) {
-      hn::StoreU(hn::Compress(v, microF), f, microQueue_.depth[k] + microQueue_.count);
+      hn::StoreU(compressed(v, micro), f, microQueue_.depth[k] + microQueue_.count);
     };
     putDepth(0, az);
     putDepth(1, hn::IfThenElse(negativeF, cz, bz));
@@ -221,7 +222,7 @@ class Visibility {
   HWY_INLINE static void enqueue(const Candidates& c, VI tag, MI which, TriangleQueue& queue) {
     const I d;
     const std::size_t n = queue.count;
-    const auto put = [&](VI v, std::int32_t* to) { hn::StoreU(hn::Compress(v, which), d, to + n); };
+    const auto put = [&](VI v, std::int32_t* to) { hn::StoreU(compressed(v, which), d, to + n); };
     put(c.ax, queue.x[0]), put(c.ay, queue.y[0]);
     put(hn::IfThenElse(c.negative, c.cx, c.bx), queue.x[1]);
     put(hn::IfThenElse(c.negative, c.cy, c.by), queue.y[1]);
