@@ -47,14 +47,15 @@ class Fragments {
   Fragments(Tile& tile, const Lighting& lighting)
       : tile_(tile), context_(*tile.context), lighting_(lighting), samples_(context_.samples.size()) {}
 
-  /// Adds the pixels `which` of the vector at x, y of the tile, none of which has a complex material.
+  bool isFull() const { return pixels_ > kPixels - kLanes; }
+
+  /// Unless it is full, adds the pixels `which` of the vector at x, y of the tile, none of which has a complex material.
   HWY_INLINE void add(int x, int y, MI which) {
     const I d;
     const VI places = hn::Add(hn::ShiftLeft<kSubpixelBits>(hn::Iota(d, 0)),
                               hn::Set(d, (x << kSubpixelBits) + (y << kRowShift)));
     hn::StoreU(compressed(places, which), d, place_ + pixels_);
     pixels_ += hn::CountTrue(d, which);
-    if (pixels_ > kPixels - kLanes) finish();
   }
 
   /// Shades and writes all pixels that were added.

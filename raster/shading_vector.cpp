@@ -64,18 +64,16 @@ class Shading {
   HWY_INLINE void shadeCell(int left, int top) {
     const int right = std::min(left + Tile::kCellWidth, tile_.width);
     const int bottom = std::min(top + Tile::kCellHeight, tile_.height);
-    const bool simple = samples_ == 1 && tile_.hasSoleMaterial() && !tile_.overlaid;
+    const bool simple = tile_.hasSoleMaterial() && !tile_.overlaid && right == left + Tile::kCellWidth;
     for (int x = left; x < right; x += static_cast<int>(kLanes))
       if (!tile_.isTouched(left, top))
         for (int y = top; y < bottom; ++y) store(hn::Set(I(), background_), x, y);
-      else if (simple && right == left + Tile::kCellWidth)
-        for (int y = top; y < bottom; ++y) simpleBlock(x, y);
       else if (samples_ == 1)
-        for (int y = top; y < bottom; ++y) block(x, y);
+        for (int y = top; y < bottom; ++y) simple ? simpleBlock(x, y) : block(x, y);
       else if (samples_ == kGroup)
-        sampledBlocks<1>(x, top, bottom);
+        sampledBlocks<1>(x, top, bottom, simple);
       else
-        sampledBlocks<2>(x, top, bottom);
+        sampledBlocks<2>(x, top, bottom, simple);
   }
 
   void fill() const {
@@ -98,7 +96,12 @@ class Shading {
   HWY_INLINE void simpleBlock(int x, int y) {
     const I d;
     const VI ids = idsAt(x, y);
-    const MI seen = hn::Ne(ids, hn::Set(d, -1));
+    shadeSimple(x, y, hn::Ne(ids, hn::Set(d, -1)), ids);
+  }
+
+  // Writes them all: background where nothing is seen, for now also where fragments are going to be written.
+  HWY_INLINE void shadeSimple(int x, int y, MI seen, VI ids) {
+    const I d;
     if (hn::AllFalse(d, seen))
       hn::StoreU(hn::Set(d, background_), d, reinterpret_cast<std::int32_t*>(pixelAt(x, y)));
     else if (tile_.plainMaterial != nullptr)
@@ -125,7 +128,7 @@ class Shading {
   // Vectors of pixels with several samples, one below the other. What they show is found out for all of them first: what
   // follows from that is hard to foresee, and so would have to wait for each.
   template <std::size_t kGroups>
-  HWY_INLINE void sampledBlocks(int x, int top, int bottom) {
+  HWY_INLINE void sampledBlocks(int x, int top, int bottom, bool simple) {
     const I d;
     const MI inside = hn::FirstN(d, static_cast<std::size_t>(tile_.width - x));
     for (int y = top; y < bottom; ++y) {
@@ -135,7 +138,10 @@ class Shading {
       shown.something = bitsOf(hn::Gt(ids.of[0], hn::Set(d, -1)));
       hn::Store(ids.of[0], d, shown.first);
     }
-    for (int y = top; y < bottom; ++y) sampledBlock(x, y, bitsOf(inside), shown_[y - top]);
+    if (simple)
+      for (int y = top; y < bottom; ++y) simpleSampledBlock(x, y, shown_[y - top]);
+    else
+      for (int y = top; y < bottom; ++y) sampledBlock(x, y, bitsOf(inside), shown_[y - top]);
   }
 
   // What pixels' samples show: all the same; the first one of them something, and what.
@@ -143,6 +149,20 @@ class Shading {
     unsigned uniform, something;
     alignas(64) std::int32_t first[kLanes];
   };
+
+  HWY_INLINE void simpleSampledBlock(int x, int y, const Shown& shown) {
+    const unsigned all = bitsOf(hn::FirstN(I(), kLanes));
+    shadeSimple(x, y, lanesOf(shown.uniform & shown.something), hn::Load(I(), shown.first));
+    if (shown.uniform != all) addFragments(x, y, lanesOf(all & ~shown.uniform));
+  }
+
+  HWY_INLINE void addFragments(int x, int y, MI pixels) {
+    if (fragments_.isFull()) {
+      flush();  // what waits may be over background
+      fragments_.finish();
+    }
+    fragments_.add(x, y, pixels);
+  }
 
   HWY_INLINE void sampledBlock(int x, int y, unsigned inside, const Shown& shown) {
     const I d;
@@ -154,7 +174,7 @@ class Shading {
     if (seen != 0) left |= bitsOf(pushSeen(x, y, lanesOf(seen), hn::Load(d, shown.first)));
     if (left == 0) return;
     if (tile_.overlaid || !tile_.hasSoleMaterial()) left = leaveSome(left, x, y);
-    if (left != 0) fragments_.add(x, y, lanesOf(left));
+    if (left != 0) addFragments(x, y, lanesOf(left));
   }
 
   // Shades pixels whose samples show one triangle each, or adds them to the points; returns what is left to others.
