@@ -179,8 +179,8 @@ class Tile {
   std::size_t plane = 0;             ///< pixels with those of the padding
   AlignedVector<float> depth;        // by offset()
   AlignedVector<std::uint32_t> ids;  // record that won the sample
-  // At pixel centres, of the record that won a sample of the pixel last: where all samples show the same record, of
-  // that one. Normal · q; with several samples, none of which lies there, normal · q and depth side by side.
+  // At pixel centres, of the record that won the pixel last: normal · q. With several samples, none of which lies there,
+  // normal · q and depth side by side, of the record that all samples show; where they do not, of nothing.
   std::array<std::vector<float>, 3> normal;
   AlignedVector<float> centers;
   std::vector<Record> records;           // the first recordCount
