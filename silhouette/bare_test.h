@@ -1,9 +1,9 @@
-// Whether a curved triangle can do without vertices inside: what its divided sides span must pass within the tolerance of
-// the patch, in the middle, and halfway between the two sides that are joined where there are.
+// Whether a curved triangle can do without vertices inside: the triangles that its divided sides span must pass within the
+// tolerance of the patch, in the middle, and halfway between the two sides that are joined where there are.
 //
 // The patch of patch.h is linear in the offsets of its sides, and so is what forBareTriangles() spans. The difference at a
-// place is a sum of the six offsets with factors that depend on which sides are divided, and on the α where a patch is
-// whole from the contour on: no patch needs to be set up, and nothing is branched on.
+// place is a sum of the six offsets with factors that depend on the pattern, and on the α where a patch is whole from the
+// contour on: no patch needs to be set up, and nothing is branched on.
 #pragma once
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include "silhouette/edge_curves.h"
+#include "silhouette/pattern.h"
 
 namespace limn::silhouette {
 
@@ -27,13 +28,20 @@ class BareTest {
  public:
   static constexpr std::size_t kPlaces = 2;
 
-  /// What the patch adds to what is spanned, at each place. `divided` has bit k where side k is divided; with all three
-  /// divided, each must have two segments.
-  static std::array<glm::vec3, kPlaces> differences(std::uint32_t divided,
+  /// Whether there is a test for a pattern without vertices inside.
+  static bool has(const Pattern& pattern) {
+    const std::uint32_t divided = pattern.dividedSides();
+    if (divided == 3) return pattern.sides == std::array<std::uint32_t, 3>{2, 2, 2};
+    return divided < 2 || std::max({pattern.sides[0], pattern.sides[1], pattern.sides[2]}) <= kMost;
+  }
+
+  /// What the patch adds to what is spanned, at each place, for a pattern that has a test.
+  static std::array<glm::vec3, kPlaces> differences(const Pattern& pattern,
                                                     const std::array<BentSide, 3>& sides,
                                                     bool wholeFromContour, const glm::vec3& fittedCenter) {
-    return {offset(kTable[divided][0], sides, wholeFromContour, fittedCenter),
-            offset(kTable[divided][1], sides, wholeFromContour, fittedCenter)};
+    const auto& places = kTable[indexOf(pattern)];
+    return {offset(places[0], sides, wholeFromContour, fittedCenter),
+            offset(places[1], sides, wholeFromContour, fittedCenter)};
   }
 
   /// What the patch adds at the middles of the spokes from the corners to the midpoint, beyond the spokes' chords.
@@ -46,8 +54,8 @@ class BareTest {
   }
 
   /// The weights of the corners at a place, and at the middle of a spoke.
-  static const std::array<float, 3>& weights(std::uint32_t divided, std::size_t place) {
-    return kTable[divided][place].weights;
+  static const std::array<float, 3>& weights(const Pattern& pattern, std::size_t place) {
+    return kTable[indexOf(pattern)][place].weights;
   }
   static const std::array<float, 3>& spokeWeights(std::size_t corner) { return kSpokes[corner].weights; }
 
@@ -62,7 +70,14 @@ class BareTest {
     float product = 0;  // of the weights
     std::array<Side, 3> sides{};
   };
-  using Table = std::array<std::array<Place, kPlaces>, 8>;
+  static constexpr std::uint32_t kMost = BareTriangles::kMaxSegments;
+  using Table = std::array<std::array<Place, kPlaces>, BareTriangles::kPatterns>;
+
+  // In a fan, four segments stand for more: the middle of the side is a vertex or nearly so.
+  static std::size_t indexOf(const Pattern& pattern) {
+    return BareTriangles::indexOf({std::min(pattern.sides[0], kMost), std::min(pattern.sides[1], kMost),
+                                   std::min(pattern.sides[2], kMost)});
+  }
 
   // What the patch adds at a place, less what is spanned there.
   static glm::vec3 offset(const Place& place, const std::array<BentSide, 3>& sides, bool wholeFromContour,
@@ -89,39 +104,62 @@ class BareTest {
     }
     return place;
   }
-  // Adds the curve of side k at t, times `factor`, to what is spanned.
-  static constexpr void span(Place& place, std::size_t k, float t, float factor) {
-    const float s = 1.0f - t;
-    place.sides[k % 3].spanned[0] += factor * (3.0f * s * t * s);
-    place.sides[k % 3].spanned[1] += factor * (3.0f * s * t * t);
+  // The weights of the corners at a vertex of BareTriangles.
+  static constexpr std::array<float, 3> weightsOf(const Pattern& pattern, std::size_t vertex) {
+    const std::size_t k = vertex / 4;
+    const float t = static_cast<float>(vertex % 4) / static_cast<float>(pattern.sides[k]);
+    std::array<float, 3> weights{};
+    weights[k] = 1.0f - t;
+    weights[(k + 1) % 3] = t;
+    return weights;
+  }
+  // Twice the area of a triangle of weights.
+  static constexpr float areaOf(const std::array<float, 3>& a, const std::array<float, 3>& b,
+                                const std::array<float, 3>& c) {
+    return (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1]);
+  }
+  // Adds the vertex's share of what is spanned: it is on the curve of its side.
+  static constexpr void span(Place& place, const Pattern& pattern, std::size_t vertex, float share) {
+    const float t = weightsOf(pattern, vertex)[(vertex / 4 + 1) % 3], s = 1.0f - t;
+    place.sides[vertex / 4].spanned[0] += share * (3.0f * s * t * s);
+    place.sides[vertex / 4].spanned[1] += share * (3.0f * s * t * t);
+  }
+  // What the triangle spans in which the place lies.
+  static constexpr void spanAll(Place& place, const Pattern& pattern) {
+    const BareTriangles& list = BareTriangles::of(pattern);
+    for (std::uint32_t i = 0; i < list.count; ++i) {
+      const std::array<std::uint8_t, 3>& v = list.corners[i];
+      const std::array<float, 3> a = weightsOf(pattern, v[0]), b = weightsOf(pattern, v[1]),
+                                 c = weightsOf(pattern, v[2]);
+      const float area = areaOf(a, b, c);
+      const std::array<float, 3> shares{areaOf(place.weights, b, c) / area,
+                                        areaOf(a, place.weights, c) / area,
+                                        areaOf(a, b, place.weights) / area};
+      if (std::min({shares[0], shares[1], shares[2]}) < -1e-5f) continue;
+      for (std::size_t k = 0; k < 3; ++k) span(place, pattern, v[k], shares[k]);
+      return;
+    }
   }
   static constexpr Table makeTable() {
     constexpr float kThird = 1.0f / 3.0f;
     Table table{};
-    for (std::size_t divided = 0; divided < 8; ++divided) {
-      const std::size_t count = (divided & 1) + (divided >> 1 & 1) + (divided >> 2 & 1);
-      Place middle = placeAt({kThird, kThird, kThird}), halfway = middle;
-      // The divided side after a whole one, as Pattern::firstDivided().
-      std::size_t k = 0;
-      while (count > 0 && count < 3 && ((divided >> k & 1) == 0 || (divided >> (k + 2) % 3 & 1) != 0)) ++k;
-      if (count == 1 || count == 2) {
-        // A ladder's apex is the end of side k, a fan's the corner opposite to it.
-        std::array<float, 3> weights{0.25f, 0.25f, 0.25f};
-        weights[(k + 3 - count) % 3] = 0.5f;
-        halfway = placeAt(weights);
-        for (std::size_t side = 0; side < count; ++side) span(halfway, k + side, 0.5f, 0.5f);
-      }
-      if (count == 1) span(middle, k, 0.5f, 2.0f * kThird);
-      if (count == 2) {
-        span(middle, k, kThird, 0.5f);
-        span(middle, k + 1, 2.0f * kThird, 0.5f);
-      }
-      if (count == 3) {
-        for (std::size_t side = 0; side < 3; ++side) span(middle, side, 0.5f, kThird);
-        halfway = middle;
-      }
-      table[divided] = {middle, halfway};
-    }
+    for (std::uint32_t a = 1; a <= kMost; ++a)
+      for (std::uint32_t b = 1; b <= kMost; ++b)
+        for (std::uint32_t c = 1; c <= kMost; ++c) {
+          const Pattern pattern{{a, b, c}, 2};
+          const std::uint32_t divided = pattern.dividedSides(), k = pattern.firstDivided();
+          Place middle = placeAt({kThird, kThird, kThird});
+          spanAll(middle, pattern);
+          Place halfway = middle;
+          if (divided == 1 || divided == 2) {
+            // A ladder's apex is the end of side k, a fan's the corner opposite to it.
+            std::array<float, 3> weights{0.25f, 0.25f, 0.25f};
+            weights[(k + 3 - divided) % 3] = 0.5f;
+            halfway = placeAt(weights);
+            spanAll(halfway, pattern);
+          }
+          table[BareTriangles::indexOf(pattern.sides)] = {middle, halfway};
+        }
     return table;
   }
   static constexpr std::array<Place, 3> makeSpokes() {

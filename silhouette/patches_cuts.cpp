@@ -53,11 +53,11 @@ bool PatchesPass::isWithin(float limit, const vec3& apart, float scale, std::siz
   return distanceAt(triangle, weights, apart) <= limit;
 }
 
-bool PatchesPass::passesBare(std::size_t triangle, const BentTriangle& bent, std::uint32_t divided) const {
+bool PatchesPass::passesBare(std::size_t triangle, const BentTriangle& bent, const Pattern& pattern) const {
   const std::array<vec3, BareTest::kPlaces> apart =
-      BareTest::differences(divided, bent.sides, bent.wholeFromContour, bent.fittedCenter);
+      BareTest::differences(pattern, bent.sides, bent.wholeFromContour, bent.fittedCenter);
   for (std::size_t i = 0; i < BareTest::kPlaces; ++i)
-    if (!isWithin(parameters.tolerance, apart[i], bent.scale, triangle, BareTest::weights(divided, i)))
+    if (!isWithin(parameters.tolerance, apart[i], bent.scale, triangle, BareTest::weights(pattern, i)))
       return false;
   return true;
 }
@@ -86,12 +86,9 @@ Pattern PatchesPass::patternOf(std::size_t triangle, const Records& records) con
   const std::uint32_t most = std::max({pattern.sides[0], pattern.sides[1], pattern.sides[2]});
   pattern.steps = most;
   if (parameters.segments > 0) return pattern;
-  const std::uint32_t divided =
-      (pattern.sides[0] > 1 ? 1u : 0u) | (pattern.sides[1] > 1 ? 2u : 0u) | (pattern.sides[2] > 1 ? 4u : 0u);
   const BentTriangle bent = bentTriangleOf(triangle, records);
-  pattern.steps = (most <= 2 || divided != 7) && passesBare(triangle, bent, divided)
-                      ? std::min(most, 2u)
-                      : gridSteps(triangle, bent);
+  pattern.steps = BareTest::has(pattern) && passesBare(triangle, bent, pattern) ? std::min(most, 2u)
+                                                                                : gridSteps(triangle, bent);
   return pattern;
 }
 

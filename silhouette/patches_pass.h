@@ -81,7 +81,7 @@ struct PatchesPass : ViewPass {
   Share decide(std::size_t word);
   Pattern patternOf(std::size_t triangle, const Records& records) const;
   BentTriangle bentTriangleOf(std::size_t triangle, const Records& records) const;
-  bool passesBare(std::size_t triangle, const BentTriangle& bent, std::uint32_t divided) const;
+  bool passesBare(std::size_t triangle, const BentTriangle& bent, const Pattern& pattern) const;
   std::uint32_t gridSteps(std::size_t triangle, const BentTriangle& bent) const;
   bool isWithin(float limit, const glm::vec3& apart, float scale, std::size_t triangle,
                 const std::array<float, 3>& weights) const;

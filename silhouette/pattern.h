@@ -62,13 +62,15 @@ constexpr void forBareTriangles(const Pattern& pattern, const SidePoint& sidePoi
     emit(first, second, third);
     return;
   }
-  // Up the two sides from the corner between them, always along the shorter of the next steps.
+  // Up the two sides from the corner between them, always along the shorter of the next steps; of two that end at the same
+  // height first along the coarser side, so that the last line across starts at a vertex of the finer one.
   const std::uint32_t m = pattern.sides[k], n = pattern.sides[next];
   const auto left = [&](std::uint32_t i) { return sidePoint(k, m - i); };
   const auto right = [&](std::uint32_t j) { return j == n ? sidePoint(last, 0) : sidePoint(next, j); };
   emit(left(1), left(0), right(1));
   for (std::uint32_t i = 1, j = 1; i < m || j < n;) {
-    if (j == n || (i < m && (i + 1) * n <= (j + 1) * m)) {
+    const std::uint32_t leftHeight = (i + 1) * n, rightHeight = (j + 1) * m;
+    if (j == n || (i < m && (leftHeight < rightHeight || (leftHeight == rightHeight && m <= n)))) {
       emit(left(i + 1), left(i), right(j));
       ++i;
     } else {
@@ -90,14 +92,17 @@ struct BareTriangles {
     return pattern.steps < 3 &&
            std::max({pattern.sides[0], pattern.sides[1], pattern.sides[2]}) <= kMaxSegments;
   }
-  static const BareTriangles& of(const Pattern& pattern) { return kTable[indexOf(pattern.sides)]; }
+  static constexpr const BareTriangles& of(const Pattern& pattern) { return kTable[indexOf(pattern.sides)]; }
 
- private:
-  using Table = std::array<BareTriangles, 64>;
-
+  static constexpr std::size_t kPatterns = 64;
+  /// Below kPatterns, for sides of 1 … kMaxSegments segments.
   static constexpr std::size_t indexOf(const std::array<std::uint32_t, 3>& sides) {
     return 16 * std::size_t{sides[0] - 1} + 4 * std::size_t{sides[1] - 1} + sides[2] - 1;
   }
+
+ private:
+  using Table = std::array<BareTriangles, kPatterns>;
+
   static constexpr Table makeTable();
   static const Table kTable;
 };
