@@ -47,6 +47,7 @@ class Run:
     def __init__(self, build, results):
         self.build, self.results = build, results
         self.start, self.rows, self.texts, self.pictures, self.commands = time.monotonic(), {}, {}, {}, []
+        self.failed = []
 
     def say(self, text):
         print(f"limn bench {time.monotonic() - self.start:4.0f} s: {text}", file=sys.stderr)
@@ -58,13 +59,14 @@ class Run:
         return os.path.join(self.build, "bench", name)
 
     def command(self, name, *command):
-        """Runs a measure; what it prints. A measure that fails is left out of the page, and said."""
+        """Runs a measure; what it prints. A measure that fails is left out of the page, and said, and the run fails."""
         self.say(" ".join([os.path.basename(command[0]), *command[1:]]))
         done = subprocess.run(command, capture_output=True, text=True)
         with open(self.file(name + ".txt"), "w", encoding="utf-8") as file:
             file.write(done.stderr)
         if done.returncode != 0:
             self.say(f"{name} failed: {done.stderr.strip().splitlines()[-1:]}")
+            self.failed.append(name)
             return None
         self.commands.append(dict(result=name, command=" ".join(command)))
         return done.stdout
@@ -162,6 +164,8 @@ def main():
     if disturbed:
         run.say(f"warning: {disturbed} timings were disturbed by other work on this machine; they are marked in the tables")
     run.say(f"done: {run.file('report.html')}")
+    if run.failed:
+        sys.exit("not in the report, for they failed: " + ", ".join(run.failed))
 
 
 if __name__ == "__main__":
