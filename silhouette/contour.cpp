@@ -24,19 +24,28 @@ double contourRoot(double a, double b, double c) {
   return numerator / (numerator + denominator);
 }
 
-float contourParameter(const View& view, const std::array<glm::vec3, 2>& p,
-                       const std::array<glm::vec3, 2>& n) {
+glm::vec3 normalTurn(const std::array<glm::vec3, 2>& p, const std::array<glm::vec3, 2>& n,
+                     const CurveOffsets& d) {
+  const glm::vec3 along = (p[1] - p[0]) + 0.75f * (d[1] - d[0]);
+  const float length2 = glm::dot(along, along);
+  if (!(length2 >= kLeastSquare)) return glm::vec3(0.0f);
+  return (0.5f * glm::dot(n[0] + n[1], along) / length2) * along;
+}
+
+// The middle control point of the normal's parabola is (n_0 + n_1)/2 - 2 w: so are those of the two products.
+float contourParameter(const View& view, const std::array<glm::vec3, 2>& p, const std::array<glm::vec3, 2>& n,
+                       const glm::vec3& turn) {
   // With D = x - o; its ends' values are those that decided visibility, so the signs are as they must be.
   const double a = -facing(view, p[0], n[0]), c = -facing(view, p[1], n[1]);
   if (!std::isfinite(a - c)) return 0.5f;  // nor are places or normals: any will do
-  if (!view.projection.perspective) return static_cast<float>(a / (a - c));
   const glm::dvec3 v1(towardsEye(view, p[0])), v2(towardsEye(view, p[1]));
-  const double b = -(glm::dot(v1, glm::dvec3(n[1])) + glm::dot(v2, glm::dvec3(n[0])));
+  const glm::dvec3 n1(n[0] - 2.0f * turn), n2(n[1] - 2.0f * turn);
+  const double b = -(glm::dot(v1, n2) + glm::dot(v2, n1));
   return static_cast<float>(contourRoot(a, b, c));
 }
 
 CurveOffsets segmentCurve(const SegmentEnd& a, const SegmentEnd& b, bool robust) {
-  const CurveStyle style{Tangents::kCircular, robust};
+  const CurveStyle style{Tangents::kGeodesicArc, robust};
   CurveOffsets offsets =
       edgeCurve(a.place, b.place, {{a.normal, a.normal}, false}, {{b.normal, b.normal}, false}, style);
   if (!robust) return offsets;

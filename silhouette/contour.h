@@ -1,7 +1,9 @@
 // Where the contour of the smooth shape crosses an edge, and the curve that joins two such points.
 //
 // Based on: L. Wang, C. Tu, W. Wang, X. Meng, B. Chan, D. Yan, "Silhouette Smoothing for Real-Time Rendering
-// of Mesh Surfaces", (2)-(7). Differs in: bridges and segments are kept as what they add to the straight line
+// of Mesh Surfaces", (2)-(7). Differs in: the normal along a bridge is a parabola that in the middle is perpendicular to
+// the bridge, not linear (on a torus of 576 triangles the linear one is up to 2.4 degrees off in the middle of an edge, this
+// one 1); bridges and segments are kept as what they add to the straight line
 // (edge_curves.h); the quadratic is solved without cancellation, and its root moves continuously through the
 // ends of the edge; a polyline's inner vertices lie outside the curve instead of on it, which leaves 3/8 of
 // the mean error for the same number of vertices.
@@ -32,10 +34,25 @@ inline float facing(const View& view, const glm::vec3& p, const glm::vec3& n) {
 /// relative error of u and of 1-u a few ulp.
 double contourRoot(double a, double b, double c);
 
-/// Where on the edge from p[0] to p[1], whose ends differ in visibility, the linear normal is perpendicular to the
-/// (linear) direction of view: in [0, 1], whatever the numbers.
-float contourParameter(const View& view, const std::array<glm::vec3, 2>& p,
-                       const std::array<glm::vec3, 2>& n);
+/// w of the normal (1-u) n[0] + u n[1] - 4 u (1-u) w along the curve with offsets d from p[0] to p[1]: what the linear one
+/// has in the direction of the curve in its middle. Not longer than the mean of the normals.
+glm::vec3 normalTurn(const std::array<glm::vec3, 2>& p, const std::array<glm::vec3, 2>& n,
+                     const CurveOffsets& d);
+
+/// Squares of lengths below this tell no direction.
+inline constexpr float kLeastSquare = 1e-37f;
+
+/// The normal that a segment has at u, not unit: with half of w. The whole would take the outlines of tubes nearer still
+/// (trefoil-480: 84 % of the error removed), but the segments then bend so much that knots pop by more than the tolerance.
+inline glm::vec3 bridgeNormal(const std::array<glm::vec3, 2>& n, const glm::vec3& turn, float u) {
+  const float s = 1.0f - u;
+  return s * n[0] + u * n[1] - (2.0f * s * u) * turn;
+}
+
+/// Where on the edge from p[0] to p[1], whose ends differ in visibility, that normal is perpendicular to the direction of
+/// view (linear; to the one of the edge's middle for w): in [0, 1], whatever the numbers.
+float contourParameter(const View& view, const std::array<glm::vec3, 2>& p, const std::array<glm::vec3, 2>& n,
+                       const glm::vec3& turn);
 
 /// An end of a silhouette segment.
 struct SegmentEnd {
@@ -48,7 +65,7 @@ struct SegmentEnd {
 struct SilhouettePoint {
   bool exists = false;
   float parameter = 0;     ///< along the edge, from point[0] to point[1]
-  glm::vec3 normal{0.0f};  ///< the linear one, not unit
+  glm::vec3 normal{0.0f};  ///< bridgeNormal()
   SegmentEnd end{};
 };
 using SilhouettePoints = std::array<SilhouettePoint, 2>;  ///< per face

@@ -14,7 +14,7 @@ using CrossedBatch = VectorBatch<6>;
 /// Of up to 64 crossed edges.
 struct Crossings {
   float parameters[CrossedBatch::kCapacity];  ///< contourParameter()
-  VectorBatch<3> vectors;  ///< the curve's point there, the linear normal, and that over its length
+  VectorBatch<3> vectors;  ///< the curve's point there, bridgeNormal(), and that over its length
   float squares[CrossedBatch::kCapacity];  ///< of that length; where it is 0 the last vector is not finite
 
   glm::vec3 place(std::size_t i) const { return vectors.vector(0, i); }

@@ -27,7 +27,7 @@ float bendOf(const CurveOffsets& d) {
 void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const Parameters& parameters,
                        const Crew& crew) {
   const std::size_t edges = topology.edges().size();
-  computeEdgeCurves(mesh, topology, {Tangents::kCircular, parameters.robust}, crew, robust_, curves);
+  computeEdgeCurves(mesh, topology, {Tangents::kGeodesicArc, parameters.robust}, crew, robust_, curves);
   computeFeatureCurves(mesh, topology, crew, curves);
   vertices.resize(edges);
   links.resize(edges);

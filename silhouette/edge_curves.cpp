@@ -20,9 +20,19 @@ float circularFactor(float cosine) {
   return 2.0f / (c * (1.0f + c));
 }
 
+// Likewise for a geodesic-like tangent: of an arc's ends it has the length 3 |e| cos θ / (1 + 2 cos² θ).
+float arcFactor(float cosine) {
+  const float c = cosine > 0.5f ? cosine : 0.5f;
+  return 2.0f * (1.0f + 2.0f * c * c) / (3.0f * c * (1.0f + c));
+}
+
+bool isArc(Tangents tangents) {
+  return tangents == Tangents::kCircular || tangents == Tangents::kGeodesicArc;
+}
+
 // What the end adds to one third of `e`, given its tangent direction's projection of e.
 vec3 offsetOf(const vec3& e, const vec3& projected, Tangents tangents) {
-  if (tangents != Tangents::kCircular) return (projected - e) / 3.0f;
+  if (!isArc(tangents)) return (projected - e) / 3.0f;
   const float length2 = dot(e, e);
   const float cosine = length2 > 0.0f ? std::sqrt(dot(projected, projected) / length2) : 1.0f;
   return (circularFactor(cosine) * projected - e) / 3.0f;
@@ -32,7 +42,7 @@ vec3 offsetOf(const vec3& e, const vec3& projected, Tangents tangents) {
 vec3 smoothOffset(const vec3& e, const vec3& n, Tangents tangents) {
   const float height = dot(e, n);
   if (height == 0.0f) return vec3(0.0f);
-  if (tangents != Tangents::kCircular) return (-height / 3.0f) * n;
+  if (!isArc(tangents)) return (-height / 3.0f) * n;
   return offsetOf(e, e - height * n, tangents);
 }
 
@@ -64,6 +74,15 @@ CurveOffsets geodesicOffsets(const vec3& e, const vec3& ni, const vec3& nj) {
   return {(2.0f * lambda * ni - mu * nj) / 3.0f, (lambda * ni - 2.0f * mu * nj) / 3.0f};
 }
 
+// Gives the tangent of a geodesic-like end the length that it has on a circular arc. `e` leaves the end.
+vec3 arcOffset(const vec3& e, const vec3& offset) {
+  if (offset == vec3(0.0f)) return offset;
+  const vec3 tangent = e / 3.0f + offset;
+  const float lengths2 = dot(tangent, tangent) * dot(e, e);
+  const float cosine = lengths2 > 0.0f ? dot(tangent, e) / std::sqrt(lengths2) : 1.0f;
+  return offset + (arcFactor(cosine) - 1.0f) * tangent;
+}
+
 EdgeEnd edgeEnd(const Mesh& mesh, const Edge& edge, const EdgeVertices& v, std::size_t end) {
   return {{mesh.normals[v[0][end]], mesh.normals[v[edge.feature[end] ? 1 : 0][end]]}, edge.feature[end]};
 }
@@ -73,8 +92,12 @@ EdgeEnd edgeEnd(const Mesh& mesh, const Edge& edge, const EdgeVertices& v, std::
 CurveOffsets edgeCurve(const vec3& pi, const vec3& pj, const EdgeEnd& atI, const EdgeEnd& atJ,
                        const CurveStyle& style) {
   const vec3 e = pj - pi;
-  if (style.tangents == Tangents::kGeodesic && !atI.feature && !atJ.feature)
-    return geodesicOffsets(e, atI.normal[0], atJ.normal[0]);
+  const bool isGeodesic = style.tangents == Tangents::kGeodesic || style.tangents == Tangents::kGeodesicArc;
+  if (isGeodesic && !atI.feature && !atJ.feature) {
+    const CurveOffsets d = geodesicOffsets(e, atI.normal[0], atJ.normal[0]);
+    if (style.tangents == Tangents::kGeodesic) return d;
+    return {arcOffset(e, d[0]), arcOffset(-e, d[1])};
+  }
   const auto offset = [&](const vec3& along, const EdgeEnd& end) {
     return end.feature ? featureOffset(along, end, style.tangents)
                        : smoothOffset(along, end.normal[0], style.tangents);

@@ -5,7 +5,10 @@
 // "Silhouette Smoothing for Real-Time Rendering of Mesh Surfaces", for the length of the circular tangent at an angle θ to
 // the edge e, 2 |e| / (1 + cos θ); M. Sabin's geodesic-like ends as quoted by the former. Differs in: a curve is kept as what it adds
 // to the straight edge, d_ij = c_ij - l_ij, which is exactly 0 where the normals are orthogonal to the edge
-// (linear precision to the last bit) and loses no digits far from the origin.
+// (linear precision to the last bit) and loses no digits far from the origin. Silhouette curves take geodesic-like
+// directions with circular lengths: across a tube or a saddle a curve in the surface leaves the plane of its chord and
+// normal, and the circular tangents alone, which do not, leave it 0.2 pixels off where these leave 0.07 (diagonals of a
+// torus of 576 triangles, 1024 pixels high); on a circle both are the same.
 #pragma once
 
 #include <array>

@@ -39,7 +39,12 @@ enum class Silhouetteness {
   kContour,  ///< the shading normals of its faces' corners
   kCrossing  ///< where the zero set of the shading normals' facing crosses it or its faces; fitted curves take kContour
 };
-enum class Tangents { kProjected, kCircular, kGeodesic };
+enum class Tangents {
+  kProjected,
+  kCircular,
+  kGeodesic,
+  kGeodesicArc  ///< geodesic-like, and as long as a circular arc's: of silhouette curves
+};
 enum class ShadingNormals { kLinear, kQuadratic };
 
 /// How to refine. The defaults are those of the program.

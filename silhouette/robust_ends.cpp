@@ -20,6 +20,7 @@ constexpr float kWitnessNone = -0.1f;  // shares of the bulge that the normals a
 constexpr float kWitnessFull = 0.4f;
 constexpr float kStencilError = 0.03f;      // τ, in edge lengths per radian
 constexpr float kStencilErrorAngle = 0.6f;  // radians of dihedral angle that count
+constexpr float kStencilShare = 0.35f;      // of what the stencil may be off for its shape
 constexpr float kTiltOnset = 0.35f;
 constexpr float kTiltWidth = 0.25f;
 constexpr float kOnsetPerDeviation = 4.0f;
@@ -52,6 +53,38 @@ std::uint32_t opposite(const Mesh& mesh, const Side& side) {
 }
 
 }  // namespace
+
+// The six places around an edge that tell where its middle is.
+struct RobustEnds::Stencil {
+  Stencil(const vec3& p, const vec3& e) : start(p), edge(e), middle(p + 0.5f * e) {}
+
+  void add(std::size_t k, float weight, const vec3& place) {
+    offset += weight * (place - start);
+    arms[k] = place - middle;
+    weights[k] = weight;
+  }
+  float error(const vec3& up) const;
+
+  vec3 start, edge, middle;
+  vec3 offset{0.0f};  // of the butterfly's middle from the edge's
+  std::array<vec3, 6> arms{};
+  std::array<float, 6> weights{};
+};
+
+// How far the stencil is off on a quadric for its shape, about: half the curvature that heights over the edge show, times the
+// weighted second moments of the places, ends included, along the edge and across.
+float RobustEnds::Stencil::error(const vec3& up) const {
+  const float edge2 = dot(edge, edge), offsetAlong = dot(offset, edge);
+  float along = 0.25f * edge2 - offsetAlong * offsetAlong / edge2;
+  float all = 0.25f * edge2 - dot(offset, offset), curvature = 0.0f;
+  for (std::size_t k = 0; k < arms.size(); ++k) {
+    const float x = dot(arms[k], edge), height = dot(arms[k], up), length2 = dot(arms[k], arms[k]);
+    along += weights[k] * (x * x / edge2);
+    all += weights[k] * length2;
+    curvature += std::fabs(height) / std::max(length2 - height * height, 0.0625f * edge2);
+  }
+  return curvature / 6.0f * (std::fabs(along) + std::fabs(all - along));
+}
 
 void RobustEnds::prepare(const Mesh& mesh, const Topology& topology, const Crew& crew) {
   mesh_ = mesh;
@@ -120,17 +153,17 @@ float RobustEnds::deviation(std::uint32_t vertex) const {
 
 // Where the butterfly scheme puts the edge's midpoint, less the midpoint. False where its stencil meets a
 // boundary or a feature, beyond which positions tell nothing about this side.
-bool RobustEnds::butterflyOffset(const Edge& edge, const vec3& start, vec3& offset) const {
-  offset = vec3(0.0f);
+bool RobustEnds::butterflyOffset(const Edge& edge, Stencil& stencil) const {
+  std::size_t count = 0;
   for (const Side& face : edge.faces) {
     if (face.triangle == kNone) return false;
-    offset += 0.125f * (mesh_.positions[opposite(mesh_, face)] - start);
+    stencil.add(count++, 0.125f, mesh_.positions[opposite(mesh_, face)]);
     for (std::uint32_t turn = 1; turn < 3; ++turn) {
       const std::uint32_t own = 3 * face.triangle + (face.side + turn) % 3;
       const Edge& wing = topology_->edges()[topology_->sideEdges()[own]];
       if (wing.boundary || wing.isFeature()) return false;
       const bool first = wing.faces[0].triangle == face.triangle && wing.faces[0].side == own % 3;
-      offset -= 0.0625f * (mesh_.positions[opposite(mesh_, wing.faces[first ? 1 : 0])] - start);
+      stencil.add(count++, -0.0625f, mesh_.positions[opposite(mesh_, wing.faces[first ? 1 : 0])]);
     }
   }
   return true;
@@ -153,14 +186,15 @@ std::array<float, 2> RobustEnds::factors(const Edge& edge) const {
 
   common *= trust_;
 
-  vec3 offset;
+  Stencil stencil(p, e);
   const float bulge = (hi + hj) / 8.0f;
-  if (bulge != 0.0f && butterflyOffset(edge, p, offset)) {
+  if (bulge != 0.0f && butterflyOffset(edge, stencil)) {
     const vec3 &ns = faceNormals_[edge.faces[0].triangle], &nt = faceNormals_[edge.faces[1].triangle];
     const vec3 sum = unit(ni + nj) + 0.5f * (ns + nt);
     const vec3 up = unit(sum - dot(sum, e) / (length * length) * e);
-    const float seen = dot(offset, up) / length * (bulge > 0.0f ? 1.0f : -1.0f);
-    const float granted = kStencilError * std::min(angleBetween(ns, nt), kStencilErrorAngle);
+    const float seen = dot(stencil.offset, up) / length * (bulge > 0.0f ? 1.0f : -1.0f);
+    const float granted = kStencilError * std::min(angleBetween(ns, nt), kStencilErrorAngle) +
+                          regularity_ * kStencilShare * stencil.error(up) / length;
     common *= smoothStep(kWitnessNone, kWitnessFull, (seen + granted) / std::fabs(bulge));
   }
   return {common * limited(hi, hj), common * limited(hj, hi)};

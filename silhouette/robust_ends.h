@@ -12,7 +12,11 @@
 //  * limiter  min(1, k h_j / h_i), not below 0: an end does not bend much more than the other, nor the other way.
 //  * witness  0 to 1 as b grows from -0.1 to 0.4 of the bulge (h_i + h_j)/8 that the normals ask for, where b is
 //    the bulge that the positions around the edge ask for (butterfly) and τ times the dihedral angle is granted
-//    for the stencil's own error. The cap of a can fails: its positions are flat.
+//    for the stencil's own error. The cap of a can fails: its positions are flat. On regular meshes (see below) a third of
+//    what the stencil is off for its shape is granted besides: it puts the middle right on a quadric only where the weighted
+//    second moments of its places cancel, as they do in a regular triangulation. With M the moments and the places'
+//    heights z over the plane at the edge it is off by about tr |M| times the mean of |z| / r². A flat cap still
+//    fails, since its heights are 0; edges around a bent tube in long triangles no longer do.
 //  * tilt     1 to 0 as the larger tilt grows by 0.25 from an onset between 0.35 and 1.15: later where the normals
 //    tell more than the mesh's own faces do, by their distance from the mean of the faces around a vertex.
 //
@@ -68,10 +72,11 @@ class RobustEnds {
   struct Evidence {
     double deviations = 0, differences = 0, tilts = 0;
   };
+  struct Stencil;
   static float regularityOf(double differences, double tilts);
   void findTrust(const Crew& crew);
   float deviation(std::uint32_t vertex) const;
-  bool butterflyOffset(const Edge& edge, const glm::vec3& start, glm::vec3& offset) const;
+  bool butterflyOffset(const Edge& edge, Stencil& stencil) const;
 
   Mesh mesh_;
   const Topology* topology_ = nullptr;

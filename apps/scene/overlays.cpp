@@ -110,7 +110,8 @@ glm::vec3 contourPoint(const OverlaySource& source, const DrawnVertices& vertice
                        std::uint32_t b) {
   if (before(vertices.position(b), vertices.position(a))) std::swap(a, b);
   const glm::vec3 &p = vertices.position(a), &q = vertices.position(b);
-  const float t = silhouette::contourParameter(source.view, {p, q}, {vertices.normal(a), vertices.normal(b)});
+  const float t = silhouette::contourParameter(source.view, {p, q}, {vertices.normal(a), vertices.normal(b)},
+                                               glm::vec3(0.0f));
   return (1.0f - t) * p + t * q;
 }
 

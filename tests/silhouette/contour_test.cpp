@@ -55,11 +55,32 @@ TEST(Contour, ParameterIsWhereTheNormalTurnsFromTheEye) {
   // A unit circle's chord; seen along x its contour point is the top, in the middle of the arc.
   const float s = std::sqrt(0.5f);
   const std::array<vec3, 2> ends{vec3(-s, s, 0), vec3(s, s, 0)};
-  EXPECT_FLOAT_EQ(contourParameter(orthographicAlong({1, 0, 0}), ends, ends), 0.5f);
+  EXPECT_FLOAT_EQ(contourParameter(orthographicAlong({1, 0, 0}), ends, ends, vec3(0.0f)), 0.5f);
   // From a finite distance the contour point comes nearer to the eye.
-  const float near = contourParameter(perspectiveFrom({-4, 0, 0}), ends, ends);
+  const float near = contourParameter(perspectiveFrom({-4, 0, 0}), ends, ends, vec3(0.0f));
   EXPECT_GT(near, 0.0f);
   EXPECT_LT(near, 0.5f);
+}
+
+TEST(Contour, NormalIsPerpendicularToTheBridgeInItsMiddle) {
+  // An edge across a cylinder about z, whose normals are unequally far from the middle of the circle they turn on.
+  const SinCos end = sinCosDegrees(35.0);
+  const std::array<vec3, 2> p{vec3(1, 0, 0), vec3(end.cos, end.sin, 0.6)},
+      n{p[0], vec3(end.cos, end.sin, 0.2f)};
+  const CurveOffsets d =
+      edgeCurve(p[0], p[1], {{n[0], n[0]}, false}, {{n[1], n[1]}, false}, {Tangents::kGeodesicArc, false});
+  const vec3 turn = normalTurn(p, n, d);
+  const vec3 along = curvePoint(p[0], p[1], d, 0.501f) - curvePoint(p[0], p[1], d, 0.499f);
+  EXPECT_GT(glm::length(turn), 0.05f);
+  EXPECT_LT(std::abs(glm::dot(0.5f * (n[0] + n[1]) - turn, glm::normalize(along))), 1e-4f);
+  // Such a normal, along the straight line of view towards the middle, is where the contour is.
+  const View view = orthographicAlong({0.3f, -0.9f, 0.1f});
+  ASSERT_NE(facing(view, p[0], n[0]) >= 0.0f, facing(view, p[1], n[1]) >= 0.0f);
+  const float u = contourParameter(view, p, n, turn);
+  const vec3 normal = (1.0f - u) * n[0] + u * n[1] - (4.0f * u * (1.0f - u)) * turn;
+  EXPECT_LT(std::abs(facing(view, p[0], normal)), 1e-6f);
+  // No length, no direction: the linear normal.
+  EXPECT_EQ(normalTurn({p[0], p[0]}, n, {}), vec3(0.0f));
 }
 
 TEST(Contour, PolylineOutsideTheCurveHalvesTheError) {

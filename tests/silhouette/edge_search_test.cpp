@@ -87,7 +87,7 @@ TEST(EdgeSearch, PassesOverOnlyWhatDoesNotMatter) {
             ASSERT_TRUE(isCandidate && search.isCrossed(e)) << shape.name << ", edge " << e;
             const SilhouettePoint& point = search.points[search.pointsOf[e]][face];
             ASSERT_TRUE(point.exists);
-            ASSERT_EQ(point.parameter, contourParameter(view, p, n));
+            ASSERT_EQ(point.parameter, contourParameter(view, p, n, normalTurn(p, n, curves.curves[e])));
             ASSERT_EQ(point.end.place, curvePoint(p[0], p[1], curves.curves[e], point.parameter));
             ++crossed;
           }

@@ -68,9 +68,12 @@ TEST(Patch, WithoutOffsetsIsTheFlatTriangle) {
   EXPECT_EQ(patch.offset(0.3f, 0.3f, 0.4f), vec3(0.0f));
 }
 
+constexpr std::array kAllTangents{Tangents::kProjected, Tangents::kCircular, Tangents::kGeodesic,
+                                  Tangents::kGeodesicArc};
+
 // Every kind of tangent leaves an edge alone whose normals are orthogonal to it.
 TEST(EdgeCurve, LinearPrecision) {
-  for (const Tangents tangents : {Tangents::kProjected, Tangents::kCircular, Tangents::kGeodesic}) {
+  for (const Tangents tangents : kAllTangents) {
     const CurveOffsets d =
         edgeCurve({0, 0, 0}, {3, 0, 0}, smooth({0, 0, 1}), smooth({0, 1, 0}), {tangents, false});
     EXPECT_EQ(d[0], vec3(0.0f));
@@ -86,7 +89,7 @@ TEST(EdgeCurve, TangentsAreOrthogonalToTheNormals) {
   Random random{std::mt19937(2)};
   for (int k = 0; k < 1000; ++k) {
     const vec3 p = random.vector(), q = random.vector();
-    for (const Tangents tangents : {Tangents::kProjected, Tangents::kCircular, Tangents::kGeodesic}) {
+    for (const Tangents tangents : kAllTangents) {
       for (const bool feature : {false, true}) {
         const EdgeEnd end{{random.unit(), random.unit()}, feature}, other = smooth(random.unit());
         if (feature && glm::length(glm::cross(end.normal[0], end.normal[1])) < 0.05f) continue;
@@ -116,6 +119,7 @@ TEST(EdgeCurve, OrderOnACircle) {
   EXPECT_NEAR(error(1.0, Tangents::kProjected) / error(0.5, Tangents::kProjected), 16.0, 2.0);
   EXPECT_NEAR(error(1.6, Tangents::kCircular) / error(0.8, Tangents::kCircular), 64.0, 12.0);
   EXPECT_LT(error(0.5, Tangents::kCircular), 2e-5);
+  EXPECT_NEAR(error(1.6, Tangents::kGeodesicArc), error(1.6, Tangents::kCircular), 1e-6);
   EXPECT_LT(error(0.5, Tangents::kGeodesic), 0.5 * error(0.5, Tangents::kProjected));
 }
 
@@ -152,7 +156,7 @@ TEST(EdgeCurve, FeatureFallBacks) {
     ASSERT_LT(glm::length(step), 5e-3f) << degrees;
   }
   // No tangent direction at all.
-  for (const Tangents tangents : {Tangents::kProjected, Tangents::kCircular, Tangents::kGeodesic}) {
+  for (const Tangents tangents : kAllTangents) {
     const CurveOffsets d = edgeCurve({0, 0, 0}, {0, 0, 1}, smooth(n), smooth(n), {tangents, false});
     EXPECT_TRUE(std::isfinite(d[0].z) && std::isfinite(d[1].z));
   }
