@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 
 namespace limn::silhouette {
 
@@ -31,12 +30,12 @@ ViewScale::ViewScale(const View& view)
 float ViewScale::within(const vec3& center, float radius) const {
   if (!perspective_) return stretch_ * pixels_;
   const float reach = radius * stretch_;
-  const float depth = dot(axis_, center) + offset_, nearest = depth - reach;
-  if (!(nearest > nearPlane_)) return std::numeric_limits<float>::infinity();
+  const float nearest = dot(axis_, center) + offset_ - reach;
+  const float foremost = std::max(nearest, 0.0f), clamped = std::max(nearest, nearPlane_);
   // |δ_xy - s δ_z| <= |δ| √(1 + s²), s the steepest slope of a point of the sphere (pixel_bound.h).
   const float distance = glm::length(center - eye_) * stretch_ + reach;
-  const float slope2 = std::max(0.0f, distance * distance - nearest * nearest) / (nearest * nearest);
-  return kRounding * stretch_ * pixels_ * std::sqrt(1.0f + slope2) / nearest;
+  const float slope2 = std::max(0.0f, distance * distance - foremost * foremost) / (clamped * clamped);
+  return kRounding * stretch_ * pixels_ * std::sqrt(1.0f + slope2) / clamped;
 }
 
 }  // namespace limn::silhouette

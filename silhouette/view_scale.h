@@ -15,8 +15,8 @@ class ViewScale {
  public:
   explicit ViewScale(const View& view);
 
-  /// Pixels that a unit of the model measures at most within a sphere; infinite where that may reach the near plane.
-  /// Differences of points as pixel_bound.h has them are within it.
+  /// Pixels that a unit of the model measures at most within a sphere, depths clamped to the near plane. Differences of
+  /// points as pixel_bound.h has them are within it.
   float within(const glm::vec3& center, float radius) const;
 
  private:
