@@ -37,10 +37,10 @@ float contourParameter(const View& view, const std::array<glm::vec3, 2>& p, cons
                        const glm::vec3& turn) {
   // With D = x - o; its ends' values are those that decided visibility, so the signs are as they must be.
   const double a = -facing(view, p[0], n[0]), c = -facing(view, p[1], n[1]);
-  if (!std::isfinite(a - c)) return 0.5f;  // nor are places or normals: any will do
   const glm::dvec3 v1(towardsEye(view, p[0])), v2(towardsEye(view, p[1]));
   const glm::dvec3 n1(n[0] - 2.0f * turn), n2(n[1] - 2.0f * turn);
   const double b = -(glm::dot(v1, n2) + glm::dot(v2, n1));
+  if (!std::isfinite((a - c) + b)) return 0.5f;  // nor are places, normals or the curve: any will do
   return static_cast<float>(contourRoot(a, b, c));
 }
 

@@ -54,7 +54,7 @@ V parametersOf(const Ends& ends) {
             denominator = hn::Abs(hn::IfThenElse(first, c, q));
     D u = hn::Div(numerator, hn::Add(numerator, denominator));
     u = hn::IfThenElse(hn::Eq(denominator, zero), hn::IfThenElseZero(first, one), u);
-    u = hn::IfThenElse(hn::IsFinite(hn::Sub(a, c)), u, hn::Set(d, 0.5));
+    u = hn::IfThenElse(hn::IsFinite(hn::Add(hn::Sub(a, c), b)), u, hn::Set(d, 0.5));
     hn::StoreU(hn::DemoteTo(half, u), half, parameters + i);
   }
   return hn::Load(Tag(), parameters);
