@@ -205,23 +205,42 @@ double circularCurveError(std::uint64_t seed, std::size_t cases) {
   return edgeCurveError(seed, cases, silhouette::Tangents::kCircular);
 }
 
-double geodesicCurveError(std::uint64_t seed, std::size_t cases) {
+// A geodesic-like end's offset, its tangent made as long as a circular arc's.
+Vec3L arcTwin(const Vec3L& e, const Vec3L& offset) {
+  const Vec3L tangent = (1 / 3.0L) * e + offset;
+  const long double lengths = length(tangent) * length(e);
+  const long double cosine = lengths > 0 ? std::max(0.5L, dot(tangent, e) / lengths) : 1.0L;
+  return offset + (2 * (1 + 2 * cosine * cosine) / (3 * cosine * (1 + cosine)) - 1) * tangent;
+}
+
+double geodesicError(std::uint64_t seed, std::size_t cases, silhouette::Tangents tangents) {
   Extremes random(seed);
   Largest largest;
   for (std::size_t i = 0; i < cases; ++i) {
     const EdgePair pair = randomPair(random);
     std::array<silhouette::EdgeEnd, 2> ends;
     for (silhouette::EdgeEnd& end : ends) end.normal[0] = end.normal[1] = randomNormal(random);
-    const CurveOffsets offsets = silhouette::edgeCurve(pair.points[0], pair.points[1], ends[0], ends[1],
-                                                       {silhouette::Tangents::kGeodesic, false});
+    const CurveOffsets offsets =
+        silhouette::edgeCurve(pair.points[0], pair.points[1], ends[0], ends[1], {tangents, false});
     const Vec3L e = Vec3L(pair.points[1]) - Vec3L(pair.points[0]), ni(ends[0].normal[0]),
                 nj(ends[1].normal[0]);
     const long double hi = dot(e, ni), hj = dot(e, nj), k = dot(ni, nj), determinant = 4 - k * k;
     const long double lambda = -(2 * hi + k * hj) / determinant, mu = -(2 * hj + k * hi) / determinant;
-    largest.see(length(Vec3L(offsets[0]) - (1 / 3.0L) * (2 * lambda * ni - mu * nj)) / length(e));
-    largest.see(length(Vec3L(offsets[1]) - (1 / 3.0L) * (lambda * ni - 2 * mu * nj)) / length(e));
+    Vec3L first = (1 / 3.0L) * (2 * lambda * ni - mu * nj), second = (1 / 3.0L) * (lambda * ni - 2 * mu * nj);
+    if (tangents == silhouette::Tangents::kGeodesicArc)
+      first = arcTwin(e, first), second = arcTwin(-1.0L * e, second);
+    largest.see(length(Vec3L(offsets[0]) - first) / length(e));
+    largest.see(length(Vec3L(offsets[1]) - second) / length(e));
   }
   return largest.value();
+}
+
+double geodesicCurveError(std::uint64_t seed, std::size_t cases) {
+  return geodesicError(seed, cases, silhouette::Tangents::kGeodesic);
+}
+
+double arcCurveError(std::uint64_t seed, std::size_t cases) {
+  return geodesicError(seed, cases, silhouette::Tangents::kGeodesicArc);
 }
 
 // A Bézier triangle by de Casteljau's rule from absolute control points.
@@ -330,6 +349,7 @@ constexpr std::array kChecks{
     KernelCheck{"edge curve, circular", "edge lengths", 2e-6, kCurveDomain, kFeatureOutside,
                 circularCurveError},
     KernelCheck{"edge curve, geodesic", "edge lengths", 1e-6, kPairDomain, kFarOrigin, geodesicCurveError},
+    KernelCheck{"edge curve, geodesic arc", "edge lengths", 2e-6, kPairDomain, kFarOrigin, arcCurveError},
     KernelCheck{"patch point", "ulp of the largest coordinate", 5.0,
                 "sizes 1e-6 to 1e6, up to 1000 from the origin", "the same, to overflow", patchError},
     KernelCheck{"contour crossing of an edge", "2^-53 of u, of 0.001 at least", 6.0,
