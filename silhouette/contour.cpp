@@ -39,8 +39,9 @@ float contourParameter(const View& view, const std::array<glm::vec3, 2>& p, cons
   const double a = -facing(view, p[0], n[0]), c = -facing(view, p[1], n[1]);
   const glm::dvec3 v1(towardsEye(view, p[0])), v2(towardsEye(view, p[1]));
   const glm::dvec3 n1(n[0] - 2.0f * turn), n2(n[1] - 2.0f * turn);
-  const double b = -(glm::dot(v1, n2) + glm::dot(v2, n1));
-  if (!std::isfinite((a - c) + b)) return 0.5f;  // nor are places, normals or the curve: any will do
+  const double free = -(glm::dot(v1, n2) + glm::dot(v2, n1));
+  if (!std::isfinite((a - c) + free)) return 0.5f;  // nor are places, normals or the curve: any will do
+  const double b = std::clamp(free, kSteepest * std::min(a, c), kSteepest * std::max(a, c));
   return static_cast<float>(contourRoot(a, b, c));
 }
 

@@ -4,8 +4,8 @@
 // of Mesh Surfaces", (2)-(7). Differs in: the normal along a bridge is a parabola that in the middle is perpendicular to
 // the bridge, not linear (on a torus of 576 triangles the linear one is up to 2.4 degrees off in the middle of an edge, this
 // one 1); bridges and segments are kept as what they add to the straight line
-// (edge_curves.h); the quadratic is solved without cancellation, and its root moves continuously through the
-// ends of the edge; a polyline's inner vertices lie outside the curve instead of on it, which leaves 3/8 of
+// (edge_curves.h); the quadratic is solved without cancellation, and bounded so that its root moves continuously through
+// the ends of the edge; a polyline's inner vertices lie outside the curve instead of on it, which leaves 3/8 of
 // the mean error for the same number of vertices.
 #pragma once
 
@@ -49,8 +49,13 @@ inline glm::vec3 bridgeNormal(const std::array<glm::vec3, 2>& n, const glm::vec3
   return s * n[0] + u * n[1] - (2.0f * s * u) * turn;
 }
 
+/// Of a quadratic's middle coefficient, in those of its ends: where it is as in (1-u) a + u c it lies between them.
+inline constexpr double kSteepest = 2.0;
+
 /// Where on the edge from p[0] to p[1], whose ends differ in visibility, that normal is perpendicular to the direction of
-/// view (linear; to the one of the edge's middle for w): in [0, 1], whatever the numbers.
+/// view (linear; to the one of the edge's middle for w): in [0, 1], whatever the numbers. The quadratic's middle coefficient
+/// is bounded by kSteepest of those at the ends: beyond, it has a second root near an end, and where that end turns the
+/// point would jump from one root to the other.
 float contourParameter(const View& view, const std::array<glm::vec3, 2>& p, const std::array<glm::vec3, 2>& n,
                        const glm::vec3& turn);
 

@@ -35,7 +35,7 @@ V parametersOf(const Ends& ends) {
   const hn::CappedTag<double, 8> d;
   const hn::Rebind<float, decltype(d)> half;
   using D = hn::Vec<decltype(d)>;
-  const D zero = hn::Zero(d), one = hn::Set(d, 1.0);
+  const D zero = hn::Zero(d), one = hn::Set(d, 1.0), steepest = hn::Set(d, kSteepest);
   alignas(64) float parameters[16];
   for (std::size_t i = 0; i < hn::Lanes(Tag()); i += hn::Lanes(d)) {
     const auto wide = [&](const float* row) { return hn::PromoteTo(d, hn::LoadU(half, row + i)); };
@@ -44,8 +44,10 @@ V parametersOf(const Ends& ends) {
                      hn::Mul(wide(a[2]), wide(b[2])));
     };
     const D a = hn::Neg(wide(ends.height[0])), c = hn::Neg(wide(ends.height[1]));
-    const D b =
+    const D free =
         hn::Neg(hn::Add(product(ends.towards[0], ends.bent[1]), product(ends.towards[1], ends.bent[0])));
+    const D least = hn::Mul(steepest, hn::Min(a, c)), most = hn::Mul(steepest, hn::Max(a, c));
+    const D b = hn::Min(hn::Max(free, least), most);
     const D root = hn::Sqrt(hn::Sub(hn::Mul(b, b), hn::Mul(hn::Mul(hn::Set(d, 4.0), a), c)));
     const auto falls = hn::Lt(b, zero), rises = hn::Gt(c, zero);
     const D q = hn::Mul(hn::Set(d, -0.5), hn::IfThenElse(falls, hn::Sub(b, root), hn::Add(b, root)));
@@ -54,7 +56,7 @@ V parametersOf(const Ends& ends) {
             denominator = hn::Abs(hn::IfThenElse(first, c, q));
     D u = hn::Div(numerator, hn::Add(numerator, denominator));
     u = hn::IfThenElse(hn::Eq(denominator, zero), hn::IfThenElseZero(first, one), u);
-    u = hn::IfThenElse(hn::IsFinite(hn::Add(hn::Sub(a, c), b)), u, hn::Set(d, 0.5));
+    u = hn::IfThenElse(hn::IsFinite(hn::Add(hn::Sub(a, c), free)), u, hn::Set(d, 0.5));
     hn::StoreU(hn::DemoteTo(half, u), half, parameters + i);
   }
   return hn::Load(Tag(), parameters);

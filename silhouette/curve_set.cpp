@@ -31,17 +31,18 @@ void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const Paramet
   computeFeatureCurves(mesh, topology, crew, curves);
   vertices.resize(edges);
   links.resize(edges);
-  trust.resize(edges);
+  ownTrust_.resize(edges);
+  blocking.prepare(mesh, topology);
   crew.forBlocks(edges, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) linkEdge(e, mesh, topology, parameters);
   });
+  trustBridges(topology, crew);
   computeFaceNormals(mesh, topology, crew, faceNormals);
   runs.resize((edges + EdgeRun::kEdges - 1) / EdgeRun::kEdges);
   crew.forBlocks(runs.size(), kItemsPerBlock / EdgeRun::kEdges, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) boundRun(r, mesh);
   });
   spread(mesh, crew);
-  blocking.prepare(mesh, topology);
 }
 
 void CurveSet::linkEdge(std::size_t e, const Mesh& mesh, const Topology& topology,
@@ -50,7 +51,7 @@ void CurveSet::linkEdge(std::size_t e, const Mesh& mesh, const Topology& topolog
   vertices[e] = edgeVertices(mesh, edge);
   if ((edge.isFeature() && !parameters.features) || (edge.boundary && !parameters.boundaries)) curves[e] = {};
   const bool doubtful = parameters.robust && !edge.isFeature() && !edge.nonManifold;
-  trust[e] = doubtful ? robust_.factors(edge) : std::array{1.0f, 1.0f};
+  ownTrust_[e] = doubtful ? robust_.factors(edge) : std::array{1.0f, 1.0f};
   const bool bends = curves[e] != CurveOffsets{}, smooth = !edge.isFeature() && !edge.boundary;
   const std::uint32_t face = edge.faces[0].triangle;
   EdgeLink& link = links[e];
@@ -58,9 +59,44 @@ void CurveSet::linkEdge(std::size_t e, const Mesh& mesh, const Topology& topolog
   link.ends = vertices[e][0];
   link.always = bends && !smooth;
   link.bend = bends && smooth ? bendOf(curves[e]) : 0.0f;
-  // Where normals are not believed at all the mesh stays as it is, to the last bit.
-  link.bridged = !edge.nonManifold && (trust[e][0] != 0.0f || trust[e][1] != 0.0f);
   link.seam = vertices[e][0] != vertices[e][1];
+}
+
+void CurveSet::trustBridges(const Topology& topology, const Crew& crew) {
+  pointTrust_.resize(topology.pointCount());
+  crew.forBlocks(pointTrust_.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) pointTrust_[p] = trustAround(p, topology);
+  });
+  trust.resize(links.size());
+  crew.forBlocks(links.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) {
+      const Edge& edge = topology.edges()[e];
+      trust[e] = {{pointTrust_[edge.point[0]], pointTrust_[edge.point[1]]},
+                  0.5f * (ownTrust_[e][0] + ownTrust_[e][1])};
+      // Where normals are not believed at all the mesh stays as it is, to the last bit.
+      links[e].bridged = !edge.nonManifold && !trust[e].isNone();
+    }
+  });
+}
+
+// The mean over the edges at a point that may be doubted; 1 where none may.
+float CurveSet::trustAround(std::size_t point, const Topology& topology) const {
+  float sum = 0.0f;
+  int count = 0;
+  // Each edge comes twice, as a side that leaves the point and as one that comes back; on a boundary once.
+  const auto add = [&](std::size_t side) {
+    const std::uint32_t e = topology.sideEdges()[side];
+    if (e == kNone) return;
+    const Edge& edge = topology.edges()[e];
+    if (edge.isFeature() || edge.nonManifold) return;
+    sum += ownTrust_[e][edge.point[0] == point ? 0 : 1];
+    ++count;
+  };
+  for (const std::uint32_t side : blocking.sidesFrom(static_cast<std::uint32_t>(point))) {
+    add(side);
+    add(side % 3 == 0 ? side + 2 : side - 1);
+  }
+  return count > 0 ? sum / static_cast<float>(count) : 1.0f;
 }
 
 void CurveSet::boundRun(std::size_t r, const Mesh& mesh) {

@@ -55,6 +55,19 @@ struct EdgeRun {
   bool always = false;  ///< one at least is
 };
 
+/// How far a bridge is believed (robust_ends.h), 0 … 1: at its ends as the edges at each vertex are on average, so that
+/// nothing jumps where the contour passes over a vertex from one edge to the next; in between as its own ends.
+struct BridgeTrust {
+  std::array<float, 2> ends{1.0f, 1.0f};
+  float middle = 1;  ///< the mean of its own
+
+  float at(float t) const {
+    const float s = 1.0f - t;
+    return s * s * ends[0] + 2.0f * s * t * middle + t * t * ends[1];
+  }
+  bool isNone() const { return ends[0] == 0.0f && ends[1] == 0.0f && middle == 0.0f; }
+};
+
 struct CurveSet {
   std::vector<EdgeVertices> vertices;  ///< of every edge
   std::vector<EdgeLink> links;         ///< likewise
@@ -64,9 +77,9 @@ struct CurveSet {
   glm::vec3 middle{0.0f};              ///< of the mesh, and how far it reaches from there
   float radius = 0;                    ///< with room for the curves' control points
   float largestBend = 0;
-  std::vector<CurveOffsets> curves;         ///< bridges and feature curves; zero where an edge stays straight
-  std::vector<std::array<float, 2>> trust;  ///< in the ends of bridges, 0 … 1: robust_ends.h
-  std::vector<glm::vec3> faceNormals;       ///< unit; zero for degenerate triangles
+  std::vector<CurveOffsets> curves;    ///< bridges and feature curves; zero where an edge stays straight
+  std::vector<BridgeTrust> trust;      ///< of every edge
+  std::vector<glm::vec3> faceNormals;  ///< unit; zero for degenerate triangles
   Blocking blocking;
 
   /// The first edge of a run, or the number of edges.
@@ -76,10 +89,14 @@ struct CurveSet {
 
  private:
   void linkEdge(std::size_t e, const Mesh& mesh, const Topology& topology, const Parameters& parameters);
+  void trustBridges(const Topology& topology, const Crew& crew);
+  float trustAround(std::size_t point, const Topology& topology) const;
   void boundRun(std::size_t r, const Mesh& mesh);
   void spread(const Mesh& mesh, const Crew& crew);
 
   RobustEnds robust_;
+  std::vector<std::array<float, 2>> ownTrust_;  // per edge
+  std::vector<float> pointTrust_;
 };
 
 }  // namespace limn::silhouette

@@ -41,13 +41,11 @@ class PointFinder {
     for (std::size_t i = 0; i < batch_.count; ++i) {
       const auto& [e, face, points] = wanted_[i];
       const float t = crossings_.parameters[i];
-      const std::array<float, 2>& trust = curves_.trust[e];
       // Where the normals of the ends cancel, the face's counts.
       const glm::vec3 unit = crossings_.squares[i] > 1e-12f
                                  ? crossings_.unit(i)
                                  : curves_.faceNormals[curves_.links[e].faces[face]];
-      (*points)[face] = {
-          true, t, crossings_.normal(i), {crossings_.place(i), unit, (1.0f - t) * trust[0] + t * trust[1]}};
+      (*points)[face] = {true, t, crossings_.normal(i), {crossings_.place(i), unit, curves_.trust[e].at(t)}};
       if (!curves_.links[e].seam) (*points)[1] = (*points)[0];
     }
     batch_.count = 0;

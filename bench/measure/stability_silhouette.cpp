@@ -326,6 +326,33 @@ double rootError(std::uint64_t seed, std::size_t cases) {
   return largest.value();
 }
 
+// What is left of the facing where the contour is said to be, over the distance from the eye.
+double bridgeError(std::uint64_t seed, std::size_t cases) {
+  Extremes random(seed);
+  Largest largest;
+  for (std::size_t i = 0; i < cases; ++i) {
+    const EdgePair pair = randomPair(random);
+    const std::array<vec3, 2> p{pair.points[0], pair.points[1]},
+        n{randomNormal(random), randomNormal(random)};
+    silhouette::View view;
+    view.eye = pair.eye;
+    if ((silhouette::facing(view, p[0], n[0]) >= 0) == (silhouette::facing(view, p[1], n[1]) >= 0)) continue;
+    const CurveOffsets d = silhouette::edgeCurve(p[0], p[1], {{n[0], n[0]}, false}, {{n[1], n[1]}, false},
+                                                 {silhouette::Tangents::kGeodesicArc, false});
+    const vec3 turn = silhouette::normalTurn(p, n, d);
+    const long double u = silhouette::contourParameter(view, p, n, turn), rest = 1 - u;
+    const std::array<Vec3L, 2> v{Vec3L(pair.eye) - Vec3L(p[0]), Vec3L(pair.eye) - Vec3L(p[1])};
+    const long double a = dot(v[0], Vec3L(n[0])), c = dot(v[1], Vec3L(n[1]));
+    const long double free =
+        dot(v[0], Vec3L(n[1])) + dot(v[1], Vec3L(n[0])) - 2 * dot(v[0] + v[1], Vec3L(turn));
+    const long double least = silhouette::kSteepest * std::min(a, c),
+                      most = silhouette::kSteepest * std::max(a, c);
+    const long double b = std::clamp(free, std::min(least, most), std::max(least, most));
+    largest.see((rest * rest * a + rest * u * b + u * u * c) / std::max(length(v[0]), length(v[1])));
+  }
+  return largest.value();
+}
+
 constexpr const char* kPairDomain =
     "sizes 1e-6 to 1e4, up to 100 sizes from the origin, needles of 1:1000, eye 3 sizes away or more";
 constexpr const char* kCurveDomain = "as for silhouetteness; feature normals 2 to 178 degrees apart";
@@ -355,6 +382,8 @@ constexpr std::array kChecks{
     KernelCheck{"contour crossing of an edge", "2^-53 of u, of 0.001 at least", 6.0,
                 "values of 1e-12 to 1e12 at the ends",
                 "at an end that is exactly on the contour the root is that end", rootError},
+    KernelCheck{"contour on a bridge's normal", "sine of the angle with the view", 1e-6, kPairDomain,
+                kFarOrigin, bridgeError},
     KernelCheck{"projection for segment counts", "pixels", 0.005,
                 "window of 16384 pixels, points no farther from the origin than half their depth",
                 "grows with the ratio; depths before the near plane count as there", projectionError},

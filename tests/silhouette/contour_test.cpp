@@ -62,6 +62,26 @@ TEST(Contour, ParameterIsWhereTheNormalTurnsFromTheEye) {
   EXPECT_LT(near, 0.5f);
 }
 
+// Seen along x from ever smaller heights of the second end, the contour goes into that end and does not stop before it at
+// the root of a parabola that turns back there.
+TEST(Contour, ParameterGoesIntoAnEndWhoseNormalBendsBack) {
+  const std::array<vec3, 2> p{vec3(0, 0, 0), vec3(0, 1, 0)};
+  const View view = orthographicAlong({-1, 0, 0});
+  const vec3 turn(0.9f, 0.0f, 0.0f);  // the parabola has turned from 0.28 on
+  const auto parameter = [&](float height) {
+    return contourParameter(view, p, {vec3(1, 0, 0), vec3(height, 1, 0)}, turn);
+  };
+  float last = 0.0f;
+  for (float height = -0.5f; height < -1e-12f; height *= 0.25f) {
+    const float u = parameter(height);
+    EXPECT_GT(u, last) << height;
+    // (1-u)² = |c| to first order.
+    EXPECT_LE(1.0f - u, 2.0f * std::sqrt(-height)) << height;
+    last = u;
+  }
+  EXPECT_GT(last, 0.9999f);
+}
+
 TEST(Contour, NormalIsPerpendicularToTheBridgeInItsMiddle) {
   // An edge across a cylinder about z, whose normals are unequally far from the middle of the circle they turn on.
   const SinCos end = sinCosDegrees(35.0);

@@ -1,6 +1,7 @@
 // What the search for silhouette curves passes over does not matter.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <glm/geometric.hpp>
 #include <random>
 
@@ -105,6 +106,49 @@ TEST(EdgeSearch, PassesOverOnlyWhatDoesNotMatter) {
   }
   EXPECT_GT(crossed, 1000u);
   EXPECT_GT(passedOver, 1000u);
+}
+
+// Where the contour passes over a vertex, it leaves one of the edges around it for another: all of them have their silhouette
+// points there then and believe them to the same degree, however much their own normals are doubted.
+TEST(EdgeSearch, EdgesAgreeAtAVertexThatTheContourPassesOver) {
+  constexpr float kTilt = 1e-7f;
+  std::size_t compared = 0, doubted = 0;
+  for (const Shape& shape : {shaken(icosphere(3), 5), shaken(torus(24, 12), 6), bumpyGrid(12)}) {
+    const Mesh mesh = shape.mesh();
+    const Topology topology(mesh);
+    const Crew crew(0);
+    const Parameters parameters;
+    CurveSet curves;
+    curves.prepare(mesh, topology, parameters, crew);
+    EdgeSearch search;
+    for (std::uint32_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
+      const vec3& n = mesh.normals[vertex];
+      const vec3 along = glm::normalize(glm::cross(n, vec3(0.3f, 0.5f, 0.8f)));
+      std::vector<float> trusts;
+      std::size_t passed = 0;
+      for (const float tilt : {-kTilt, kTilt}) {
+        const View view = orthographicAlong(along + tilt * n);
+        search.run(mesh, topology, curves, view, parameters, crew);
+        for (const std::uint32_t e : search.crossed) {
+          const std::array<std::uint32_t, 2>& v = curves.vertices[e][0];
+          if (v[0] != vertex && v[1] != vertex) continue;
+          const std::size_t end = v[0] == vertex ? 0 : 1;
+          const SilhouettePoint& point = search.points[search.pointsOf[e]][0];
+          if (std::fabs(facing(view, mesh.positions[v[1 - end]], mesh.normals[v[1 - end]])) < 0.05f) continue;
+          ASSERT_NEAR(point.parameter, static_cast<float>(end), 0.01f) << shape.name << ", edge " << e;
+          trusts.push_back(point.end.trust);
+          ++passed;
+        }
+      }
+      if (trusts.empty()) continue;
+      const auto [least, most] = std::minmax_element(trusts.begin(), trusts.end());
+      EXPECT_LE(*most - *least, 0.02f) << shape.name << ", vertex " << vertex;
+      compared += passed;
+      doubted += *most < 1.0f ? 1 : 0;
+    }
+  }
+  EXPECT_GT(compared, 1000u);
+  EXPECT_GT(doubted, 100u);
 }
 
 }  // namespace
