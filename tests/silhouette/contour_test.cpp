@@ -72,8 +72,8 @@ TEST(Contour, ParameterGoesIntoAnEndWhoseNormalBendsBack) {
     return contourParameter(view, p, {vec3(1, 0, 0), vec3(height, 1, 0)}, turn);
   };
   float last = 0.0f;
-  for (float height = -0.5f; height < -1e-12f; height *= 0.25f) {
-    const float u = parameter(height);
+  for (int step = 0; step < 20; ++step) {
+    const float height = -std::ldexp(0.5f, -2 * step), u = parameter(height);
     EXPECT_GT(u, last) << height;
     // (1-u)² = |c| to first order.
     EXPECT_LE(1.0f - u, 2.0f * std::sqrt(-height)) << height;
