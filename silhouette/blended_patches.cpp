@@ -40,8 +40,6 @@ namespace {
 
 using glm::vec3;
 
-constexpr std::size_t kEdgesPerBlock = 4096;
-
 class BlendedPatches final : public MethodState {
  public:
   explicit BlendedPatches(const Source& source)
@@ -66,7 +64,7 @@ class BlendedPatches final : public MethodState {
     if (fitted_.empty())
       computeEdgeCurves(mesh_, topology_, style, crew, robust_, curves_);
     else
-      placeFittedCurves(crew);
+      placeFittedCurves(mesh_, topology_, fitted_, crew, curves_, centers_);
     if (isRigid_) robust_ = {};  // not asked again
     if (clusters_.count() == 0) clusters_.build(mesh_, topology_);
     clusters_.update(mesh_, topology_, test_, curves_, centers_, whereFitted(parameters), crew);
@@ -108,28 +106,6 @@ class BlendedPatches final : public MethodState {
     wanted.boundaries = true;
     if (wanted.silhouetteness == Silhouetteness::kCrossing) wanted.silhouetteness = Silhouetteness::kContour;
     return wanted;
-  }
-
-  void placeFittedCurves(const Crew& crew) {
-    curves_.resize(topology_.edges().size());
-    centers_.resize(mesh_.triangleCount());
-    crew.forBlocks(curves_.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t e = begin; e < end; ++e) {
-        const Edge& edge = topology_.edges()[e];
-        const std::array<std::uint32_t, 2> ends = edgeVertices(mesh_, edge)[0];
-        const std::array<vec3, 2> normals = endNormals(mesh_, edge);
-        curves_[e] = edge.nonManifold ? CurveOffsets{}
-                                      : fittedOffsets(mesh_.positions[ends[0]], mesh_.positions[ends[1]],
-                                                      normals[0], normals[1], fitted_.edges[e]);
-      }
-    });
-    crew.forBlocks(centers_.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        const std::uint32_t* corner = &mesh_.indices[3 * t];
-        centers_[t] = fittedCenter(mesh_.positions[corner[0]], mesh_.positions[corner[1]],
-                                   mesh_.positions[corner[2]], fitted_.centers[t]);
-      }
-    });
   }
 
   Mesh mesh_;

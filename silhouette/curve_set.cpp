@@ -24,11 +24,15 @@ float bendOf(const CurveOffsets& d) {
 
 }  // namespace
 
-void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const Parameters& parameters,
-                       const Crew& crew) {
+void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const FittedCurves& fitted,
+                       const Parameters& parameters, const Crew& crew) {
   const std::size_t edges = topology.edges().size();
-  computeEdgeCurves(mesh, topology, {Tangents::kGeodesicArc, parameters.robust}, crew, robust_, curves);
-  computeFeatureCurves(mesh, topology, crew, curves);
+  if (fitted.empty()) {
+    computeEdgeCurves(mesh, topology, {Tangents::kGeodesicArc, parameters.robust}, crew, robust_, curves);
+    computeFeatureCurves(mesh, topology, crew, curves);
+  } else {
+    placeFittedCurves(mesh, topology, fitted, crew, curves, centers);
+  }
   vertices.resize(edges);
   links.resize(edges);
   ownTrust_.resize(edges);
@@ -50,7 +54,7 @@ void CurveSet::linkEdge(std::size_t e, const Mesh& mesh, const Topology& topolog
   const Edge& edge = topology.edges()[e];
   vertices[e] = edgeVertices(mesh, edge);
   if ((edge.isFeature() && !parameters.features) || (edge.boundary && !parameters.boundaries)) curves[e] = {};
-  const bool doubtful = parameters.robust && !edge.isFeature() && !edge.nonManifold;
+  const bool doubtful = centers.empty() && parameters.robust && !edge.isFeature() && !edge.nonManifold;
   ownTrust_[e] = doubtful ? robust_.factors(edge) : std::array{1.0f, 1.0f};
   const bool bends = curves[e] != CurveOffsets{}, smooth = !edge.isFeature() && !edge.boundary;
   const std::uint32_t face = edge.faces[0].triangle;

@@ -80,12 +80,15 @@ struct CurveSet {
   std::vector<CurveOffsets> curves;    ///< bridges and feature curves; zero where an edge stays straight
   std::vector<BridgeTrust> trust;      ///< of every edge
   std::vector<glm::vec3> faceNormals;  ///< unit; zero for degenerate triangles
+  std::vector<glm::vec3> centers;      ///< what fitted patches add to b111; empty without
   Blocking blocking;
 
   /// The first edge of a run, or the number of edges.
   std::size_t firstOfRun(std::size_t r) const { return std::min(r * EdgeRun::kEdges, links.size()); }
 
-  void prepare(const Mesh& mesh, const Topology& topology, const Parameters& parameters, const Crew& crew);
+  /// From the mesh alone, or with fitted curves, which are believed.
+  void prepare(const Mesh& mesh, const Topology& topology, const FittedCurves& fitted,
+               const Parameters& parameters, const Crew& crew);
 
  private:
   void linkEdge(std::size_t e, const Mesh& mesh, const Topology& topology, const Parameters& parameters);

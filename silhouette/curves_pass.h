@@ -17,6 +17,7 @@
 #include "silhouette/crossed_edges.h"
 #include "silhouette/curve_set.h"
 #include "silhouette/edge_search.h"
+#include "silhouette/patch.h"
 #include "silhouette/view_pass.h"
 
 namespace limn::silhouette {
@@ -95,6 +96,7 @@ struct CurvesPass : ViewPass {
   // curves_segments.cpp
   void findSegments();
   Segment segmentOf(std::uint32_t triangle) const;
+  Patch fittedPatch(std::uint32_t triangle) const;
   void lowerPoints();
   void addPlanes(std::uint32_t triangle, const Segment& segment);
   void lower(std::uint32_t point, const glm::vec3& displacement);

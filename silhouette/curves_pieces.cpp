@@ -116,6 +116,8 @@ void CurvesPass::writeCentre(std::uint32_t at, std::uint32_t triangle, const Sid
     if (side.edge == nullptr || side.edge->segments == 1) continue;
     const CurveOffsets offsets = curveOf(*side.edge).offsets;
     patch.sides[k] = {offsets[side.back ? 1 : 0], offsets[side.back ? 0 : 1]};
+    if (!prepared.centers.empty())
+      patch.fittedCenter += (third * side.edge->alpha) * prepared.centers[triangle];
   }
   writer.vertex(at, patch.point(third, third, third), {triangle, {third, third}}, kLinear);
 }

@@ -2,7 +2,7 @@
 // vertices that are lowered because they would hide a concave one.
 //
 // Based on: L. Wang et al., "Silhouette Smoothing for Real-Time Rendering of Mesh Surfaces", section III. Differs in: what
-// contour.h and blocking.h say.
+// contour.h and blocking.h say; where a model has fitted curves segments run on its patches (fitted_curves.h).
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -17,6 +17,19 @@ using glm::vec2;
 using glm::vec3;
 
 constexpr std::size_t kTrianglesPerBlock = 256;
+
+// The patch above the straight line between the ends' weights: a cubic, known by its points at the thirds, where it adds
+// (4 d_0 + 2 d_1)/9 and (2 d_0 + 4 d_1)/9 to the chord.
+CurveOffsets curveOnPatch(const Patch& patch, const std::array<SegmentEnd, 2>& ends,
+                          const std::array<vec2, 2>& weights) {
+  std::array<vec3, 2> added;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const float t = k == 0 ? 1.0f / 3.0f : 2.0f / 3.0f, s = 1.0f - t;
+    const vec2 w = s * weights[0] + t * weights[1];
+    added[k] = patch.point(1.0f - w.x - w.y, w.x, w.y) - (s * ends[0].place + t * ends[1].place);
+  }
+  return {3.0f * added[0] - 1.5f * added[1], 3.0f * added[1] - 1.5f * added[0]};
+}
 
 }  // namespace
 
@@ -51,8 +64,25 @@ CurvesPass::Segment CurvesPass::segmentOf(std::uint32_t triangle) const {
     segment.weights[end] = sideWeights(sides[end], side.parameter());
   }
   segment.exists = true;
-  segment.offsets = segmentCurve(segment.ends[0], segment.ends[1], parameters.robust);
+  segment.offsets = prepared.centers.empty()
+                        ? segmentCurve(segment.ends[0], segment.ends[1], parameters.robust)
+                        : curveOnPatch(fittedPatch(triangle), segment.ends, segment.weights);
   return segment;
+}
+
+Patch CurvesPass::fittedPatch(std::uint32_t triangle) const {
+  Patch patch;
+  for (std::size_t k = 0; k < 3; ++k) {
+    patch.corners[k] = mesh.positions[mesh.indices[3 * std::size_t{triangle} + k]];
+    const std::uint32_t e = topology.sideEdges()[3 * std::size_t{triangle} + k];
+    if (e == kNone) continue;
+    const Edge& edge = topology.edges()[e];
+    const bool isSecond = edge.faces[1].triangle == triangle && edge.faces[1].side == k;
+    const CurveOffsets& offsets = prepared.curves[e];
+    patch.sides[k] = edge.runsBack(isSecond ? 1 : 0) ? CurveOffsets{offsets[1], offsets[0]} : offsets;
+  }
+  patch.fittedCenter = prepared.centers[triangle];
+  return patch;
 }
 
 void CurvesPass::lowerPoints() {

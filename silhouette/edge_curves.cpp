@@ -125,4 +125,27 @@ void computeEdgeCurves(const Mesh& mesh, const Topology& topology, const CurveSt
   });
 }
 
+void placeFittedCurves(const Mesh& mesh, const Topology& topology, const FittedCurves& fitted,
+                       const Crew& crew, std::vector<CurveOffsets>& curves, std::vector<vec3>& centers) {
+  curves.resize(topology.edges().size());
+  centers.resize(mesh.triangleCount());
+  crew.forBlocks(curves.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e) {
+      const Edge& edge = topology.edges()[e];
+      const std::array<std::uint32_t, 2> ends = edgeVertices(mesh, edge)[0];
+      const std::array<vec3, 2> normals = endNormals(mesh, edge);
+      curves[e] = edge.nonManifold ? CurveOffsets{}
+                                   : fittedOffsets(mesh.positions[ends[0]], mesh.positions[ends[1]],
+                                                   normals[0], normals[1], fitted.edges[e]);
+    }
+  });
+  crew.forBlocks(centers.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const std::uint32_t* corner = &mesh.indices[3 * t];
+      centers[t] = fittedCenter(mesh.positions[corner[0]], mesh.positions[corner[1]],
+                                mesh.positions[corner[2]], fitted.centers[t]);
+    }
+  });
+}
+
 }  // namespace limn::silhouette

@@ -47,6 +47,10 @@ CurveOffsets edgeCurve(const glm::vec3& pi, const glm::vec3& pj, const EdgeEnd& 
 void computeEdgeCurves(const Mesh& mesh, const Topology& topology, const CurveStyle& style, const Crew& crew,
                        RobustEnds& robust, std::vector<CurveOffsets>& curves);
 
+/// Those of fitted edges instead, 0 at non-manifold ones, and what (F2) adds in every triangle (fitted_curves.h).
+void placeFittedCurves(const Mesh& mesh, const Topology& topology, const FittedCurves& fitted,
+                       const Crew& crew, std::vector<CurveOffsets>& curves, std::vector<glm::vec3>& centers);
+
 /// 0 below `low`, 1 above `high`, and a smooth cubic between.
 inline float smoothStep(float low, float high, float x) {
   const float t = x <= low ? 0.0f : x >= high ? 1.0f : (x - low) / (high - low);

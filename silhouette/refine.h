@@ -143,7 +143,8 @@ struct RefineTask;
 class Refiner {
  public:
   /// Borrows mesh arrays, topology and fitted curves for as long as it lives. Patches are drawn with the
-  /// fitted curves where there are any; boundary edges are then smooth from every viewpoint.
+  /// fitted curves where there are any, and silhouette curves on those patches; boundary edges are then smooth from every
+  /// viewpoint.
   /// Throws std::invalid_argument where the counts of mesh, topology and fitted curves do not agree; that the topology was
   /// made of this mesh is the caller's duty.
   Refiner(const Mesh& mesh, const Topology& topology, Workers& workers, const FittedCurves& fitted = {});

@@ -7,7 +7,7 @@
 // The order of a view's steps is here, and what is kept from view to view; curves_pass.h has the steps.
 //
 // However wrong normals are, a new vertex is within 0.9 of its triangle's longest side of where its origin is on the flat
-// one: 0.3 for the bridge, 0.3 of at most 1.6 sides for the segment, 0.09 for a polyline outside its curve.
+// one (with fitted curves as far as their patches go): 0.3 for the bridge, 0.3 of at most 1.6 sides for the segment, 0.09 for a polyline outside its curve.
 #include <chrono>
 
 #include "raster/base/scratch.h"
@@ -46,7 +46,10 @@ namespace {
 class SilhouetteCurves final : public MethodState {
  public:
   explicit SilhouetteCurves(const Source& source)
-      : mesh_(source.mesh), topology_(*source.topology), scratch_(static_cast<std::size_t>(source.threads)) {}
+      : mesh_(source.mesh),
+        topology_(*source.topology),
+        fitted_(source.fitted),
+        scratch_(static_cast<std::size_t>(source.threads)) {}
 
   void deform(const Mesh& mesh) override {
     mesh_ = mesh;
@@ -54,9 +57,10 @@ class SilhouetteCurves final : public MethodState {
   }
 
   void prepare(const Parameters& parameters, const Crew& crew) override {
-    const Style style{parameters.robust, parameters.features, parameters.boundaries};
+    const Parameters wanted = whereFitted(parameters);
+    const Style style{wanted.robust, wanted.features, wanted.boundaries};
     if (isPrepared_ && style == style_) return;
-    prepared_.prepare(mesh_, topology_, parameters, crew);
+    prepared_.prepare(mesh_, topology_, fitted_, wanted, crew);
     style_ = style;
     isPrepared_ = true;
   }
@@ -97,8 +101,16 @@ class SilhouetteCurves final : public MethodState {
     bool operator==(const Style&) const = default;
   };
 
+  // Fitted boundaries are known, not guessed.
+  Parameters whereFitted(const Parameters& parameters) const {
+    Parameters wanted = parameters;
+    wanted.boundaries = wanted.boundaries || !fitted_.empty();
+    return wanted;
+  }
+
   Mesh mesh_;
   const Topology& topology_;
+  FittedCurves fitted_;
   std::vector<CurvesPass::Scratch> scratch_;
   CurveSet prepared_;
   Style style_;

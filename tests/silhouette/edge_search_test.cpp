@@ -68,7 +68,7 @@ TEST(EdgeSearch, PassesOverOnlyWhatDoesNotMatter) {
     for (const float tolerance : {0.5f, 0.02f}) {
       Parameters parameters;
       parameters.tolerance = tolerance;
-      curves.prepare(mesh, topology, parameters, crew);
+      curves.prepare(mesh, topology, {}, parameters, crew);
       for (const View& view : someViews(4.0f)) {
         search.run(mesh, topology, curves, view, parameters, crew);
         const PixelBound bound(view);
@@ -119,7 +119,7 @@ TEST(EdgeSearch, EdgesAgreeAtAVertexThatTheContourPassesOver) {
     const Crew crew(0);
     const Parameters parameters;
     CurveSet curves;
-    curves.prepare(mesh, topology, parameters, crew);
+    curves.prepare(mesh, topology, {}, parameters, crew);
     EdgeSearch search;
     for (std::uint32_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
       const vec3& n = mesh.normals[vertex];

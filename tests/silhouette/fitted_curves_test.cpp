@@ -9,11 +9,14 @@
 #include <glm/mat3x3.hpp>
 #include <random>
 
+#include "silhouette/edge_curves.h"
+#include "silhouette/patch.h"
 #include "tests/silhouette/shapes.h"
 
 namespace limn::silhouette::test {
 namespace {
 
+using glm::vec2;
 using glm::vec3;
 
 constexpr std::uint32_t kSeed = 20241;
@@ -131,7 +134,14 @@ TEST(FittedCurves, EveryEdgeIsMetOnce) {
   }
 }
 
-TEST(FittedCurves, StaysClosedWithAnyCurves) {
+class FittedMethods : public testing::TestWithParam<Method> {};
+
+INSTANTIATE_TEST_SUITE_P(Both, FittedMethods, testing::Values(Method::kPatches, Method::kCurves),
+                         [](const auto& tested) {
+                           return tested.param == Method::kPatches ? "Patches" : "Curves";
+                         });
+
+TEST_P(FittedMethods, StayClosedWithAnyCurves) {
   for (const Shape& shape : allShapes()) {
     const Mesh mesh = shape.mesh();
     const Topology topology(mesh);
@@ -146,6 +156,7 @@ TEST(FittedCurves, StaysClosedWithAnyCurves) {
     for (const View& view : someViews(4.0f)) {
       RefinedStream stream, other;
       Parameters parameters;
+      parameters.method = GetParam();
       parameters.tolerance = 0.2f;
       single.refine(view, parameters, stream);
       many.refine(view, parameters, other);
@@ -157,6 +168,57 @@ TEST(FittedCurves, StaysClosedWithAnyCurves) {
       }
     }
   }
+}
+
+// The patch above a straight line of weights is a cubic, and that is the silhouette segment.
+TEST(FittedCurves, SilhouetteSegmentsRunOnThePatches) {
+  constexpr int kSegments = 32;
+  std::size_t inside = 0;
+  for (const Shape& shape : {icosphere(1), torus(12, 8), shaken(icosphere(1), 3)}) {
+    const Mesh mesh = shape.mesh();
+    const Topology topology(mesh);
+    const RandomCurves random(topology, mesh.triangleCount(), kSeed);
+    std::vector<CurveOffsets> curves;
+    std::vector<vec3> centers;
+    placeFittedCurves(mesh, topology, random.curves(), Crew(0), curves, centers);
+    const auto patchOf = [&](std::uint32_t t) {
+      Patch patch;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t from = mesh.indices[3 * t + k], e = topology.sideEdges()[3 * t + k];
+        patch.corners[k] = mesh.positions[from];
+        patch.sides[k] = curves[e];
+        if (topology.points()[from] != topology.edges()[e].point[0])
+          std::swap(patch.sides[k][0], patch.sides[k][1]);
+      }
+      patch.fittedCenter = centers[t];
+      return patch;
+    };
+    Workers one(1);
+    Refiner refiner(mesh, topology, one, random.curves());
+    Parameters parameters;
+    parameters.method = Method::kCurves;
+    parameters.segments = kSegments;
+    parameters.listContour = true;
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+    for (const View& view : someViews(4.0f)) {
+      RefinedStream stream;
+      refiner.refine(view, parameters, stream);
+      for (const ContourLine& line : stream.contour) {
+        if (!line.crossesTriangle || line.from < first) continue;
+        const Origin& origin = stream.origins[line.from - first];
+        const vec2 w = origin.weights;
+        const vec3 place = patchOf(origin.triangle).point(1.0f - w.x - w.y, w.x, w.y);
+        const vec3 &a = mesh.positions[mesh.indices[3 * origin.triangle]],
+                   &b = mesh.positions[mesh.indices[3 * origin.triangle + 1]];
+        // Vertices are 3/4 of a sagitta outside the curve, and its second derivative is at most about six sides.
+        ASSERT_LT(glm::distance(stream.positions[line.from - first], place),
+                  0.75f / 8.0f * 6.0f / (kSegments * kSegments) * glm::distance(a, b) + 1e-5f)
+            << shape.name;
+        ++inside;
+      }
+    }
+  }
+  EXPECT_GT(inside, 1000u);
 }
 
 TEST(FittedCurves, RefinerWantsOnePerEdgeAndTriangle) {
