@@ -3,8 +3,8 @@
 // Based on: L. Wang et al., "Silhouette Smoothing for Real-Time Rendering of Mesh Surfaces", section III.C-D.
 // Differs in: an edge has a silhouette point for each of its faces, because the normals may differ across it
 // (features, texture seams); where they do not it is the same one. A point that falls within kSnap of the
-// tolerance of an end of the edge or of a sample becomes that vertex: decided here, once per edge, so both
-// faces see the same.
+// tolerance of an end of the edge, of a sample or of the other face's point becomes that vertex: decided here, once per
+// edge, so both faces see the same.
 #pragma once
 
 #include <array>
@@ -56,10 +56,20 @@ struct EdgeCurve {
   }
 };
 
+/// What a view shows of an edge's curve between its vertices. Without a silhouette point α of it is added to the chord; with
+/// one, to the line that goes from end to end over that point, since this is what the edge shows when α is 0.
+struct ShownCurve {
+  EdgeCurve bridge;
+  float alpha = 1;
+  float peak = 0;  ///< parameter of the silhouette point; 0: none
+
+  glm::vec3 sample(std::uint32_t k, std::uint32_t segments) const;
+};
+
 /// Lets silhouette points become vertices that are within `snap` pixels of them, and ranks them. An end may take
 /// points when `open[end]`.
-void settle(CrossedEdge& edge, const EdgeCurve& curve, const EdgeCurve& bridge,
-            const std::array<bool, 2>& open, const PixelBound& bound, float snap);
+void settle(CrossedEdge& edge, const ShownCurve& shown, const std::array<bool, 2>& open,
+            const PixelBound& bound, float snap);
 
 /// The vertices between the ends, in order. Returns their number.
 std::size_t listVertices(const CrossedEdge& edge, EdgeVertexList& list);

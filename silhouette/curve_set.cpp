@@ -36,7 +36,7 @@ void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const FittedC
   vertices.resize(edges);
   links.resize(edges);
   ownTrust_.resize(edges);
-  blocking.prepare(mesh, topology);
+  blocking.prepare(mesh, topology);  // trustAround() asks it for the sides at a point
   crew.forBlocks(edges, kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) linkEdge(e, mesh, topology, parameters);
   });
@@ -77,13 +77,26 @@ void CurveSet::trustBridges(const Topology& topology, const Crew& crew) {
       const Edge& edge = topology.edges()[e];
       trust[e] = {{pointTrust_[edge.point[0]], pointTrust_[edge.point[1]]},
                   0.5f * (ownTrust_[e][0] + ownTrust_[e][1])};
-      // Where normals are not believed at all the mesh stays as it is, to the last bit.
-      links[e].bridged = !edge.nonManifold && !trust[e].isNone();
     }
+  });
+  crew.forBlocks(links.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t e = begin; e < end; ++e)
+      links[e].bridged = !topology.edges()[e].nonManifold && isBelievedAround(e, topology);
   });
 }
 
-// The mean over the edges at a point that may be doubted; 1 where none may.
+// Whether a side of the triangles at an edge is believed somewhere: then their segments, which end on this edge, too, come and
+// go with the contour. Where nothing is, the mesh stays as it is, to the last bit.
+bool CurveSet::isBelievedAround(std::size_t e, const Topology& topology) const {
+  for (const std::uint32_t face : links[e].faces)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t side = topology.sideEdges()[3 * std::size_t{face} + k];
+      if (side != kNone && !trust[side].isNone()) return true;
+    }
+  return false;
+}
+
+// The mean over the edges at a point that may be doubted, boundaries counting half; 1 where none may.
 float CurveSet::trustAround(std::size_t point, const Topology& topology) const {
   float sum = 0.0f;
   int count = 0;

@@ -94,6 +94,7 @@ struct CurveSet {
   void linkEdge(std::size_t e, const Mesh& mesh, const Topology& topology, const Parameters& parameters);
   void trustBridges(const Topology& topology, const Crew& crew);
   float trustAround(std::size_t point, const Topology& topology) const;
+  bool isBelievedAround(std::size_t e, const Topology& topology) const;
   void boundRun(std::size_t r, const Mesh& mesh);
   void spread(const Mesh& mesh, const Crew& crew);
 

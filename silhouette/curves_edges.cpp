@@ -85,7 +85,7 @@ void CurvesPass::placeEdges() {
       const std::array<std::uint32_t, 2>& ends = prepared.vertices[scratch.edges[k].edge][0];
       const std::array<bool, 2> open{scratch.loweredOf[ends[0]] == kNone,
                                      scratch.loweredOf[ends[1]] == kNone};
-      settle(scratch.edges[k], curveOf(scratch.edges[k]), bridgeOf(scratch.edges[k]), open, bound, snap);
+      settle(scratch.edges[k], shownOf(scratch.edges[k]), open, bound, snap);
     }
   });
   StreamSize size{stream.positions.size(), 0};
@@ -102,12 +102,12 @@ void CurvesPass::placeEdges() {
 
 void CurvesPass::emitEdge(const CrossedEdge& record) {
   const Edge& edge = topology.edges()[record.edge];
-  const EdgeCurve curve = curveOf(record);
+  const ShownCurve shown = shownOf(record);
   EdgeVertexList list;
   const std::size_t count = listVertices(record, list);
   for (std::uint32_t k = 0; k < count; ++k) {
-    const vec3 position = list[k].sample == 0 ? bridgeOf(record).point(list[k].t)
-                                              : curve.sample(list[k].sample, record.segments);
+    const vec3 position =
+        list[k].sample == 0 ? shown.bridge.point(list[k].t) : shown.sample(list[k].sample, record.segments);
     for (std::uint32_t face = 0; face < (record.seam ? 2u : 1u); ++face) {
       const Side& side = edge.faces[face];
       const float along = edge.runsBack(face) ? 1.0f - list[k].t : list[k].t;

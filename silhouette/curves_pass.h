@@ -121,7 +121,14 @@ struct CurvesPass : ViewPass {
     return {{mesh.positions[ends[0]], mesh.positions[ends[1]]}, prepared.curves[record.edge]};
   }
 
-  // The curve that is sampled.
+  ShownCurve shownOf(const CrossedEdge& record) const {
+    ShownCurve shown{bridgeOf(record), record.alpha};
+    for (std::size_t face = 0; face < 2 && shown.peak == 0.0f; ++face)
+      if (record.crosses[face]) shown.peak = scratch.search.points[record.points][face].parameter;
+    return shown;
+  }
+
+  // The curve that steps are counted for.
   EdgeCurve curveOf(const CrossedEdge& record) const {
     const std::array<std::uint32_t, 2>& ends = prepared.vertices[record.edge][0];
     const CurveOffsets& offsets = prepared.curves[record.edge];

@@ -140,7 +140,7 @@ std::uint8_t EdgeSearch::stateOf(std::size_t e, const CurveSet& curves, const Li
     differs = differs || visible[second[0]] != visible[second[1]];
   }
   const unsigned mayBend = (link.always ? 1U : 0U) | (bends ? 1U : 0U);
-  const unsigned isCut = (differs ? 1U : 0U) & ((link.bridged ? 1U : 0U) | (link.always ? 1U : 0U));
+  const unsigned isCut = (differs ? 1U : 0U) & (link.bridged ? 1U : 0U);
   return static_cast<std::uint8_t>(isCut * kCrossed + mayBend * kMayBend);
 }
 

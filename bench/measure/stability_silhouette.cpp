@@ -326,7 +326,7 @@ double rootError(std::uint64_t seed, std::size_t cases) {
   return largest.value();
 }
 
-// What is left of the facing where the contour is said to be, over the distance from the eye.
+// What is left of the bounded quadratic (contour.h) where the silhouette point is said to be, over the distance from the eye.
 double bridgeError(std::uint64_t seed, std::size_t cases) {
   Extremes random(seed);
   Largest largest;
@@ -347,7 +347,7 @@ double bridgeError(std::uint64_t seed, std::size_t cases) {
         dot(v[0], Vec3L(n[1])) + dot(v[1], Vec3L(n[0])) - 2 * dot(v[0] + v[1], Vec3L(turn));
     const long double least = silhouette::kSteepest * std::min(a, c),
                       most = silhouette::kSteepest * std::max(a, c);
-    const long double b = std::clamp(free, std::min(least, most), std::max(least, most));
+    const long double b = std::clamp(free, least, most);
     largest.see((rest * rest * a + rest * u * b + u * u * c) / std::max(length(v[0]), length(v[1])));
   }
   return largest.value();
@@ -382,8 +382,8 @@ constexpr std::array kChecks{
     KernelCheck{"contour crossing of an edge", "2^-53 of u, of 0.001 at least", 6.0,
                 "values of 1e-12 to 1e12 at the ends",
                 "at an end that is exactly on the contour the root is that end", rootError},
-    KernelCheck{"contour on a bridge's normal", "sine of the angle with the view", 1e-6, kPairDomain,
-                kFarOrigin, bridgeError},
+    KernelCheck{"silhouette point on a bridge", "residual of the quadratic over the distance", 1e-6,
+                kPairDomain, kFarOrigin, bridgeError},
     KernelCheck{"projection for segment counts", "pixels", 0.005,
                 "window of 16384 pixels, points no farther from the origin than half their depth",
                 "grows with the ratio; depths before the near plane count as there", projectionError},

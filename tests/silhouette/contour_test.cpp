@@ -7,6 +7,7 @@
 #include "raster/base/elementary.h"
 #include "shapes.h"
 #include "silhouette/contour.h"
+#include "silhouette/crossed_edges.h"
 #include "silhouette/feature_curves.h"
 
 namespace limn::silhouette::test {
@@ -101,6 +102,24 @@ TEST(Contour, NormalIsPerpendicularToTheBridgeInItsMiddle) {
   EXPECT_LT(std::abs(facing(view, p[0], normal)), 1e-6f);
   // No length, no direction: the linear normal.
   EXPECT_EQ(normalTurn({p[0], p[0]}, n, {}), vec3(0.0f));
+}
+
+// With α the samples of a crossed edge grow from the line over its silhouette point to its curve.
+TEST(Contour, SamplesOfACrossedEdgeBeginOnWhatItShowsWithoutThem) {
+  const EdgeCurve bridge{{vec3(0, 0, 0), vec3(4, 0, 0)}, {vec3(0.3f, 1, 0), vec3(-0.2f, 2, 0.5f)}};
+  const float peak = 0.3f;
+  const vec3 top = bridge.point(peak);
+  for (std::uint32_t k = 1; k < 8; ++k) {
+    const float t = static_cast<float>(k) / 8.0f;
+    const vec3 over = t < peak ? t / peak * top : top + (t - peak) / (1.0f - peak) * (bridge.ends[1] - top);
+    const auto sample = [&](float alpha) { return ShownCurve{bridge, alpha, peak}.sample(k, 8); };
+    EXPECT_LT(glm::distance(sample(1e-7f), over), 2e-6f) << k;
+    EXPECT_LT(glm::distance(sample(0.5f), 0.5f * (over + bridge.sample(k, 8))), 2e-6f) << k;
+    EXPECT_EQ(sample(1.0f), bridge.sample(k, 8));
+    // Without a point, α of the curve.
+    const EdgeCurve half{bridge.ends, {0.5f * bridge.offsets[0], 0.5f * bridge.offsets[1]}};
+    EXPECT_EQ((ShownCurve{bridge, 0.5f, 0.0f}.sample(k, 8)), half.sample(k, 8));
+  }
 }
 
 TEST(Contour, PolylineOutsideTheCurveHalvesTheError) {

@@ -78,6 +78,25 @@ TEST(Curves, WatertightWhereVerticesLieOnTheContour) {
 // triangle's longest side of the point of the flat triangle that its origin names. (A bridge leaves its edge by at
 // most 0.3 of it, a segment between two such points its chord by 0.3 of at most 1.6 sides, and a polyline's vertices
 // lie at most 0.09 outside it.)
+// Exporters round the normals on both sides of a texture seam apart.
+TEST(Curves, SeamsWithRoundedNormalsGetNoSlivers) {
+  std::mt19937 random(3);
+  Shape shape = torn(icosphere(2));
+  const Shape exact = shape;
+  for (vec3& n : shape.normals)
+    for (int axis = 0; axis < 3; ++axis)
+      n[axis] += 1e-6f * (static_cast<float>(random() % 2001) / 1000.0f - 1.0f);
+  const auto trianglesOf = [](const Shape& drawn, const View& view) {
+    const Mesh mesh = drawn.mesh();
+    const Topology topology(mesh);
+    Workers workers(1);
+    RefinedStream stream;
+    Refiner(mesh, topology, workers).refine(view, curves(), stream);
+    return stream.triangleCount();
+  };
+  for (const View& view : someViews(4.0f)) EXPECT_EQ(trianglesOf(shape, view), trianglesOf(exact, view));
+}
+
 TEST(Curves, NewVerticesStayNearTheirTriangle) {
   std::mt19937 random(17);
   std::vector<Shape> shapes = allShapes();
