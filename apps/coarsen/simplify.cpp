@@ -20,7 +20,8 @@ using glm::dvec3;
 constexpr double kBoundaryWeight = 10.0;  // of a squared distance from a boundary, per squared length
 constexpr double kShortness = 1e-6;       // of a squared edge length, so that flat parts get fair triangles
 constexpr double kLeastTurn = 0.2;        // cosine of the angle by which a face may turn in one step
-constexpr double kLeastHeight = 0.04;     // of a triangle, times its longest side, in its doubled area
+constexpr double kLeastFatness = 0.04;    // of a triangle: its height over its longest side
+constexpr double kThinning = 0.5;         // what a sliver keeps of that at least in one step
 constexpr std::size_t kMostNeighbours = 24;  // of both ends together
 
 /// Sum of weighted squared distances from planes.
@@ -47,6 +48,19 @@ class Quadric {
   double weight_ = 0.0;
 };
 
+/// Of a triangle: its normal, twice its area long, and that length over the square of the longest side.
+struct Shape {
+  dvec3 normal;
+  double fatness;
+
+  explicit Shape(const std::array<dvec3, 3>& p) : normal(glm::cross(p[1] - p[0], p[2] - p[0])) {
+    const dvec3 a = p[1] - p[0], b = p[2] - p[1], c = p[0] - p[2];
+    const double longest2 = std::max({dot(a, a), dot(b, b), dot(c, c)});
+    fatness = longest2 > 0.0 ? glm::length(normal) / longest2 : 0.0;
+  }
+  bool isSliver() const { return fatness < kLeastFatness; }
+};
+
 /// Moving point `from` onto point `to`.
 struct Collapse {
   double cost = 0.0;
@@ -57,6 +71,11 @@ struct Collapse {
     if (cost != other.cost) return cost > other.cost;
     return from != other.from ? from > other.from : to > other.to;
   }
+};
+
+/// What may be lost where nothing else is left to collapse.
+struct Rules {
+  bool seamsGiveWay, makesSlivers;
 };
 
 /// What the corners of one material with one vertex at `from` become at `to`.
@@ -84,7 +103,7 @@ class Simplifier {
 
   Simplified run(std::size_t triangles, const std::function<void(double)>& progress) {
     const std::size_t first = left_;
-    for (const bool relaxed : {false, true}) {
+    for (const Rules rules : {Rules{false, false}, Rules{true, false}, Rules{true, true}}) {
       std::size_t before = left_ + 1;
       while (left_ > triangles && left_ < before) {
         before = left_;
@@ -93,7 +112,7 @@ class Simplifier {
           const Collapse next = queue_.top();
           queue_.pop();
           if (version_[next.from] != next.fromVersion || version_[next.to] != next.toVersion) continue;
-          if (tryCollapse(next.from, next.to, relaxed) && progress && left_ % 1024 < 2 && first > triangles)
+          if (tryCollapse(next.from, next.to, rules) && progress && left_ % 1024 < 2 && first > triangles)
             progress(static_cast<double>(first - left_) / static_cast<double>(first - triangles));
         }
       }
@@ -179,22 +198,29 @@ class Simplifier {
     return common == shared;
   }
 
-  bool keepsShape(Index from, Index to) const {
+  std::array<dvec3, 3> placesOf(Index face) const {
+    return {points_[pointAt(3 * face)], points_[pointAt(3 * face + 1)], points_[pointAt(3 * face + 2)]};
+  }
+  // No face turns over, and none becomes a sliver. One that is a sliver already may get thinner, since the needles between
+  // clusters of near points must do so before they can go; its plane does not say which side of it is out.
+  bool keepsShape(Index from, Index to, const Rules& rules) const {
     for (const Index face : facesOf_[from]) {
       if (hasPoint(face, to)) continue;
-      std::array<dvec3, 3> p;
-      for (Index corner = 0; corner < 3; ++corner) p[corner] = points_[pointAt(3 * face + corner)];
-      const dvec3 before = glm::cross(p[1] - p[0], p[2] - p[0]);
+      std::array<dvec3, 3> places = placesOf(face);
+      const Shape before(places);
       for (Index corner = 0; corner < 3; ++corner)
-        if (pointAt(3 * face + corner) == from) p[corner] = points_[to];
-      const dvec3 after = glm::cross(p[1] - p[0], p[2] - p[0]);
-      const double area = glm::length(after);
-      const double longest2 = std::max(
-          {dot(p[1] - p[0], p[1] - p[0]), dot(p[2] - p[1], p[2] - p[1]), dot(p[0] - p[2], p[0] - p[2])});
-      if (dot(before, after) < kLeastTurn * glm::length(before) * area || area < kLeastHeight * longest2)
-        return false;
+        if (pointAt(3 * face + corner) == from) places[corner] = points_[to];
+      const Shape after(places);
+      if (!rules.makesSlivers && after.isSliver() && after.fatness < kThinning * before.fatness) return false;
+      const dvec3 side = before.isSliver() ? vertexNormals(face) : before.normal;
+      if (dot(side, after.normal) < kLeastTurn * glm::length(side) * glm::length(after.normal)) return false;
     }
     return true;
+  }
+  dvec3 vertexNormals(Index face) const {
+    dvec3 sum(0.0);
+    for (Index corner = 0; corner < 3; ++corner) sum += dvec3(in_.normals[wedges_[3 * face + corner]]);
+    return sum;
   }
 
   // Fills moves_ from the faces that vanish; false where they leave a wedge without a successor or with two.
@@ -242,9 +268,9 @@ class Simplifier {
     return best;
   }
 
-  bool tryCollapse(Index from, Index to, bool relaxed) {
-    if (!keepsTopology(from, to) || !keepsShape(from, to)) return false;
-    if (!mapWedges(from, to) && !relaxed) return false;
+  bool tryCollapse(Index from, Index to, const Rules& rules) {
+    if (!keepsTopology(from, to) || !keepsShape(from, to, rules)) return false;
+    if (!mapWedges(from, to) && !rules.seamsGiveWay) return false;
     std::vector<Index>& kept = facesOf_[to];
     std::vector<std::array<Index, 2>> changes;  // side, wedge: decided before anything changes
     for (const Index face : facesOf_[from]) {
