@@ -25,6 +25,7 @@ constexpr float kTiltOnset = 0.35f;
 constexpr float kTiltWidth = 0.25f;
 constexpr float kOnsetPerDeviation = 4.0f;
 constexpr float kDeviationMost = 0.2f;
+constexpr float kTurnFull = 1.0f / 3.0f;
 constexpr float kOwnFull = 0.15f;  // ρ
 constexpr float kOwnNone = 0.4f;
 constexpr float kEvidenceNone = 0.6f;
@@ -100,6 +101,7 @@ void RobustEnds::prepare(const Mesh& mesh, const Topology& topology, const Crew&
         angleBetween(next, before) * faceNormals_[side / 3];
   }
   findTrust(crew);
+  curvature_.prepare(mesh, topology, ringNormals_, isSmooth_);
 }
 
 // Sums by blocks of edges, joined in order. A vertex counts once for each of its edges.
@@ -185,6 +187,13 @@ std::array<float, 2> RobustEnds::factors(const Edge& edge) const {
   float common = 1.0f - smoothStep(onset, onset + kTiltWidth, std::max(std::fabs(hi), std::fabs(hj)));
 
   common *= trust_;
+  if (!(common > 0.0f)) return {0.0f, 0.0f};
+
+  const auto turn = [&](std::size_t end) {
+    return curvature_.turn(edge.point[end], ringNormals_[edge.point[end]], e);
+  };
+  const float even = 0.5f * (turn(0) + turn(1));
+  if (even > 0.0f) common *= smoothStep(0.0f, kTurnFull, std::fabs(hi + hj) / even);
 
   Stencil stencil(p, e);
   const float bulge = (hi + hj) / 8.0f;

@@ -7,7 +7,7 @@
 // ask for leave a fifth to a third of all views of scanned models worse than the flat mesh. The harm is done
 // at creases that nobody marked, where normals tilted by 45 degrees on flat faces blow them up, and by detail
 // finer than the mesh. With the tilts h_i = -⟨ê, n_i⟩ and h_j = ⟨ê, n_j⟩ (both positive where the curve rises
-// above the edge), an end's offset is scaled by three factors, each continuous in positions and normals:
+// above the edge), an end's offset is scaled by four factors, each continuous in positions and normals:
 //
 //  * limiter  min(1, k h_j / h_i), not below 0: an end does not bend much more than the other, nor the other way.
 //  * witness  0 to 1 as b grows from -0.1 to 0.4 of the bulge (h_i + h_j)/8 that the normals ask for, where b is
@@ -19,6 +19,10 @@
 //    fails, since its heights are 0; edges around a bent tube in long triangles no longer do.
 //  * tilt     1 to 0 as the larger tilt grows by 0.25 from an onset between 0.35 and 1.15: later where the normals
 //    tell more than the mesh's own faces do, by their distance from the mean of the faces around a vertex.
+//
+//  * turn     0 to 1 as the normals turn by up to a third, h_i + h_j, of what they would had the edge all along the
+//    curvature that they show around its ends: along a flat face from one rounded corner to another they turn
+//    near the ends alone, and an arc as long as the edge is not what they ask for.
 //
 // Edges with features are left alone; boundaries have no witness. The limiter is a doubt about normals that scatter; it
 // fades to nothing as the differences of the edges' tilts, on average over the mesh, fall from 0.3 to 0.15 of the tilts
@@ -48,6 +52,7 @@
 #include <vector>
 
 #include "silhouette/method.h"
+#include "silhouette/ring_curvature.h"
 
 namespace limn::silhouette {
 
@@ -83,7 +88,8 @@ class RobustEnds {
   std::vector<glm::vec3> faceNormals_;  // unit
   std::vector<glm::vec3> ringNormals_;  // per point: angle-weighted mean of the faces around it, not unit
   std::vector<std::uint8_t> isSmooth_;  // per point: no feature and no boundary around it
-  std::vector<Evidence> evidence_;      // per block of edges
+  RingCurvature curvature_;
+  std::vector<Evidence> evidence_;  // per block of edges
   float trust_ = 1;
   float regularity_ = 0;
 };
