@@ -11,6 +11,7 @@
 
 #include "apps/coarsen/fit.h"
 #include "apps/coarsen/outline_weight.h"
+#include "apps/coarsen/same_vertices.h"
 #include "apps/coarsen/simplify.h"
 #include "apps/coarsen/store.h"
 #include "raster/base/check.h"
@@ -28,13 +29,18 @@ constexpr double kWeighed = 0.1, kSimplified = 0.3, kFitted = 0.95;
 
 /// A fine mesh, ready to be coarsened.
 struct Fine {
+  std::vector<Index> indices;  ///< those of the mesh, one vertex for all that differ in nothing
   std::vector<Index> pointOf;
   Surface surface;
   std::vector<double> weights;
 
   Fine(const scene::Mesh& mesh, Workers& workers)
       : surface(makeSurface(mesh.positions, mesh.normals, mesh.indices, &pointOf)),
-        weights(outlineWeights(surface, kWeightFloor, workers)) {}
+        weights(outlineWeights(surface, kWeightFloor, workers)) {
+    const std::vector<Index> firsts = firstsOfTheSame(mesh, pointOf);
+    indices.reserve(mesh.indices.size());
+    for (const Index vertex : mesh.indices) indices.push_back(firsts[vertex]);
+  }
 };
 
 void tell(const Progress& progress, double from, double to, double part) {
@@ -155,8 +161,8 @@ void fitCurves(const Fine& fine, const FitSettings& settings, Workers& workers, 
 scene::Mesh reduced(const scene::Mesh& fine, const Fine& prepared, std::size_t triangles, Workers& workers,
                     Report* report, const Progress& progress) {
   const std::vector<Index> partOf = partOfTriangles(fine);
-  const SimplifyInput input{fine.indices, fine.normals,     prepared.pointOf,
-                            partOf,       prepared.surface, prepared.weights};
+  const SimplifyInput input{prepared.indices, fine.normals,     fine.texcoords,  prepared.pointOf,
+                            partOf,           prepared.surface, prepared.weights};
   const Simplified simplified =
       simplify(input, triangles, [&](double part) { tell(progress, kWeighed, kSimplified, part); });
   scene::Mesh coarse = assemble(fine, partOf, simplified);

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <queue>
 
 namespace limn::coarsen {
@@ -22,6 +23,7 @@ constexpr double kShortness = 1e-6;       // of a squared edge length, so that f
 constexpr double kLeastTurn = 0.2;        // cosine of the angle by which a face may turn in one step
 constexpr double kLeastFatness = 0.04;    // of a triangle: its height over its longest side
 constexpr double kThinning = 0.5;         // what a sliver keeps of that at least in one step
+constexpr float kTextureJump = 4.0f;      // per unit of texture coordinates, against cosines of normals
 constexpr std::size_t kMostNeighbours = 24;  // of both ends together
 
 /// Sum of weighted squared distances from planes.
@@ -251,15 +253,18 @@ class Simplifier {
     return wedges_[3 * face + 2];
   }
 
-  // Across a seam: the vertex at `to` whose normal is the closest, of the same material where it has one there.
+  // Across a seam: the vertex at `to` that is the closest in its normal and its texture, of the same material where it has one
+  // there.
   Index likeliestWedge(Index face, Index from, Index to) const {
-    const glm::vec3 normal = in_.normals[wedgeAt(face, from)];
+    const Index old = wedgeAt(face, from);
+    const glm::vec3 normal = in_.normals[old];
     Index best = kNone;
-    float bestScore = -4.0f;
+    float bestScore = -std::numeric_limits<float>::infinity();
     for (const Index other : facesOf_[to]) {
       const Index wedge = wedgeAt(other, to);
-      const float score =
-          glm::dot(normal, in_.normals[wedge]) + (groupAt(other) == groupAt(face) ? 2.0f : 0.0f);
+      float score = glm::dot(normal, in_.normals[wedge]) + (groupAt(other) == groupAt(face) ? 8.0f : 0.0f);
+      if (!in_.texcoords.empty())
+        score -= kTextureJump * std::min(1.0f, glm::distance(in_.texcoords[old], in_.texcoords[wedge]));
       if (score > bestScore) {
         bestScore = score;
         best = wedge;

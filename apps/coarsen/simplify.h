@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <functional>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
@@ -17,8 +19,9 @@ struct Simplified {
 
 /// What the simplifier must know of a mesh: `pointOf` and `surface` as makeSurface() gives them.
 struct SimplifyInput {
-  std::span<const Index> indices;      ///< three vertices per triangle, materials side by side
-  std::span<const glm::vec3> normals;  ///< of vertices
+  std::span<const Index> indices;        ///< three vertices per triangle, materials side by side
+  std::span<const glm::vec3> normals;    ///< of vertices
+  std::span<const glm::vec2> texcoords;  ///< of vertices, or none
   std::span<const Index> pointOf;
   std::span<const Index> groupOf;  ///< of triangles: their materials
   const Surface& surface;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "apps/coarsen/outline_weight.h"
+#include "apps/coarsen/same_vertices.h"
 #include "tests/coarsen/fine_models.h"
 
 namespace limn::coarsen::test {
@@ -25,7 +26,8 @@ struct Case {
     weights.assign(surface.points.size(), 1.0);
   }
   Simplified to(std::size_t triangles) const {
-    return simplify({mesh.indices, mesh.normals, pointOf, groupOf, surface, weights}, triangles);
+    return simplify({mesh.indices, mesh.normals, mesh.texcoords, pointOf, groupOf, surface, weights},
+                    triangles);
   }
   scene::Mesh meshOf(const Simplified& simplified) const {
     scene::Mesh result = mesh;
@@ -103,6 +105,44 @@ TEST(Simplify, SplitNormalsGiveWayWhereTheyMust) {
   }
   const Case model(torn);
   EXPECT_LE(model.to(200).triangles.size(), 200u);
+}
+
+// As files without indices have it: a vertex for each corner.
+scene::Mesh tornField() {
+  const scene::Mesh field = bumpyField(24);
+  scene::Mesh torn;
+  for (const Index vertex : field.indices) {
+    torn.indices.push_back(static_cast<Index>(torn.positions.size()));
+    torn.positions.push_back(field.positions[vertex]);
+    torn.normals.push_back(field.normals[vertex]);
+    torn.texcoords.push_back(field.texcoords[vertex]);
+  }
+  torn.parts.push_back({0, static_cast<Index>(torn.indices.size() / 3), 0});
+  return torn;
+}
+
+TEST(Simplify, VerticesThatDifferInNothingAreNoSeam) {
+  Case model(tornField());
+  const std::vector<Index> firsts = firstsOfTheSame(model.mesh, model.pointOf);
+  for (std::size_t v = 0; v < firsts.size(); ++v) {
+    ASSERT_EQ(firsts[firsts[v]], firsts[v]);
+    ASSERT_EQ(model.mesh.positions[firsts[v]], model.mesh.positions[v]);
+    ASSERT_EQ(model.mesh.texcoords[firsts[v]], model.mesh.texcoords[v]);
+  }
+  for (Index& vertex : model.mesh.indices) vertex = firsts[vertex];
+  const Simplified simplified = model.to(200);
+  EXPECT_LE(simplified.triangles.size(), 200u);
+  // The texture begins anew at x = 0, and no triangle reaches from one side to the other.
+  for (std::size_t t = 0; t < simplified.triangles.size(); ++t) {
+    float centre = 0.0f;
+    for (std::size_t k = 0; k < 3; ++k)
+      centre += model.mesh.positions[simplified.indices[3 * t + k]].x / 3.0f;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index vertex = simplified.indices[3 * t + k];
+      EXPECT_NEAR(model.mesh.texcoords[vertex].x,
+                  model.mesh.positions[vertex].x + (centre < 0.0f ? 1.0f : 0.0f), 1e-6f);
+    }
+  }
 }
 
 // Marching through a volume leaves clusters of near points with needles between them: here around each vertex of a fair
