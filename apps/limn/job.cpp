@@ -37,9 +37,11 @@ int indexOf(const std::string& text, const std::vector<Item>& items, const std::
   }
 }
 
+/// The name without its folders; never one that reads like an option.
 std::string baseName(const std::string& path) {
   const std::size_t slash = path.rfind('/');
-  return slash == std::string::npos ? path : path.substr(slash + 1);
+  const std::string name = slash == std::string::npos ? path : path.substr(slash + 1);
+  return name.size() > 1 && name.front() == '-' ? "./" + name : name;
 }
 
 /// As a shell reads it back.
@@ -112,6 +114,8 @@ Job::Job(const scene::Scene& scene, const JobOptions& options) : scene_(scene), 
 void Job::resolveLookAt() {
   const JobOptions& o = options_;
   if (o.eye) {
+    if (o.orthoHeight < 0.0)
+      throw UsageError("--ortho fit is for limn's own camera; with --eye give a height, like --ortho 2");
     lookAt_ = {*o.eye, o.target.value_or(bounds_.center), o.up.value_or(glm::dvec3(0.0, 1.0, 0.0)),
                o.fovDegrees, o.orthoHeight};
     return;

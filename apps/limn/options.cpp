@@ -303,7 +303,7 @@ CLI::App* addCoarsen(CLI::App& app, CoarsenOptions& o) {
       ->required()
       ->type_name("SMALL.glb");
   Group group(*coarsen, "Coarsening");
-  group.add("--triangles", "N", "at most so many triangles in all, at least 4", "",
+  group.add("--triangles", "N", "aim for so many triangles in all, at least 4 per mesh", "",
             [&o](const std::string& text) {
               o.triangles = static_cast<std::size_t>(parseInteger(text, 4, 1'000'000'000));
             });
@@ -348,6 +348,16 @@ Other viewers show the coarse mesh; limn reads the curves (extension LIMN_fitted
   throw UsageError(message + (nearest.empty() ? "; see limn --help" : "; did you mean " + nearest + "?"));
 }
 
+/// `--stats=$FILE` of an unset variable: the parser would take the next word for the value.
+void refuseEmptyValues(int count, const char* const* arguments) {
+  for (int k = 1; k < count; ++k) {
+    const std::string_view word = arguments[k];
+    if (word == "--") return;
+    if (word == "-o=" || (word.size() > 3 && word.substr(0, 2) == "--" && word.find('=') == word.size() - 1))
+      throw UsageError(std::string(word) + " has no value; write one after '='");
+  }
+}
+
 }  // namespace
 
 CommandLine readCommandLine(int count, const char* const* arguments) {
@@ -389,6 +399,7 @@ Exit status: 0 done; 1 a fault of limn; 2 usage; 3 bad input; 4 output could not
 written; 5 images differ; 128+n ended by signal n.
 )");
 
+  refuseEmptyValues(count, arguments);
   try {
     app.parse(count, arguments);
   } catch (const CLI::CallForHelp&) {

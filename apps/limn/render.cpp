@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,7 @@
 #include "apps/limn/terminal.h"
 #include "apps/limn/values.h"
 #include "apps/scene/load.h"
+#include "apps/scene/output_file.h"
 
 namespace limn::program {
 namespace {
@@ -43,17 +45,49 @@ class Selection {
   std::pair<int, int> shard_;
 };
 
-/// Results that would replace each other. (Names that a pattern makes are not looked at.)
-void requireOwnFiles(const RenderOptions& o) {
-  if (o.statistics && (o.statistics == o.output || o.statistics == o.manifest))
-    throw UsageError("--stats names the file of another result; give it one of its own");
-  if (o.manifest && o.manifest == o.output)
-    throw UsageError("--manifest names the file of the frame; give it one of its own");
+bool isSameFile(const std::string& a, const std::string& b) {
+  namespace fs = std::filesystem;
+  return fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
+}
+
+/// Calls visit(path) for the files of all frames, planes included.
+template <class Visit>
+void forFrameFiles(const RenderOptions& o, const OutputPattern* pattern, const Selection& selection,
+                   const Visit& visit) {
+  if (pattern == nullptr || pattern->isStandardOutput()) return;
+  for (int i = 0; i < selection.count(); ++i) {
+    const std::string path = pattern->path(selection.frame(i));
+    visit(path);
+    for (const Aov aov : o.aovs) visit(besidePath(path, aovName(aov)));
+  }
+}
+
+/// No result may replace another.
+void requireOwnFiles(const RenderOptions& o, const OutputPattern* pattern, const Selection& selection) {
+  if (o.statistics && o.manifest && isSameFile(*o.statistics, *o.manifest))
+    throw UsageError("--stats names the file of the manifest; give it one of its own");
+  const auto check = [&](const char* option, const std::optional<std::string>& file) {
+    if (!file) return;
+    const std::filesystem::path name = std::filesystem::path(*file).filename();
+    forFrameFiles(o, pattern, selection, [&](const std::string& path) {
+      if (std::filesystem::path(path).filename() == name && isSameFile(path, *file))
+        throw UsageError(std::string(option) + " names the file of a frame, " + path +
+                         "; give it one of its own");
+    });
+  };
+  check("--stats", o.statistics);
+  check("--manifest", o.manifest);
+}
+
+/// Before anything is drawn that would be lost.
+void requireWritableFiles(const RenderOptions& o, const OutputPattern* pattern, const Selection& selection) {
+  forFrameFiles(o, pattern, selection, scene::requireWritable);
+  if (o.statistics) scene::requireWritable(*o.statistics);
+  if (o.manifest) scene::requireWritable(*o.manifest);
 }
 
 /// Combinations of options that make no sense, before anything is loaded.
 void checkOutput(const RenderOptions& o) {
-  requireOwnFiles(o);
   if (!o.output) {
     if (!o.hash && !o.dryRun && !o.statistics)
       throw UsageError("no output; name one with -o, like -o picture.png");
@@ -234,6 +268,8 @@ int render(const RenderOptions& options) {
   if (pattern && !pattern->hasNumber() && !pattern->isStandardOutput() && selection.list().count() > 1)
     throw UsageError(std::to_string(selection.list().count()) + " frames do not fit into one file '" +
                      *options.output + "'; give a pattern like frames/%04d.png");
+  requireOwnFiles(options, pattern ? &*pattern : nullptr, selection);
+  if (options.dryRun) requireWritableFiles(options, pattern ? &*pattern : nullptr, selection);
   totals.prepareMs = millisecondsSince(start);
 
   if (options.dryRun && !options.hash) {

@@ -178,22 +178,41 @@ void writeAll(int descriptor, const std::string& name, const void* bytes, std::s
   }
 }
 
-void writeFileWhole(const std::string& path, const void* bytes, std::size_t count) {
+namespace {
+
+// What lies at `path` or where it links to; regular where nothing is there yet. Throws where no file can be.
+mode_t modeToReplace(const std::string& path, std::string& target) {
   struct stat status {};
-  std::string target = path;
-  if (::lstat(path.c_str(), &status) == 0) {
-    if (S_ISLNK(status.st_mode)) {
-      target = linkTarget(path);
-      if (::stat(target.c_str(), &status) != 0)
-        status.st_mode = S_IFREG | kFileMode;  // the link leads nowhere yet
-    }
-    if (S_ISDIR(status.st_mode)) throw OutputError(path + ": is a directory; name a file in it");
-    if (!S_ISREG(status.st_mode)) return writeToDevice(target, bytes, count);
-    if ((status.st_mode & 0222) == 0)
-      throw OutputError(path +
-                        ": is there already and read-only; remove it, make it writable or write elsewhere");
+  target = path;
+  if (::lstat(path.c_str(), &status) != 0) return S_IFREG | kFileMode;
+  if (S_ISLNK(status.st_mode)) {
+    target = linkTarget(path);
+    if (::stat(target.c_str(), &status) != 0) return S_IFREG | kFileMode;  // the link leads nowhere yet
   }
+  if (S_ISDIR(status.st_mode)) throw OutputError(path + ": is a directory; name a file in it");
+  if (S_ISREG(status.st_mode) && (status.st_mode & 0222) == 0)
+    throw OutputError(path +
+                      ": is there already and read-only; remove it, make it writable or write elsewhere");
+  return status.st_mode;
+}
+
+}  // namespace
+
+void writeFileWhole(const std::string& path, const void* bytes, std::size_t count) {
+  std::string target;
+  if (!S_ISREG(modeToReplace(path, target))) return writeToDevice(target, bytes, count);
   if (!writeThroughNameless(target, bytes, count)) writeThroughNamed(target, bytes, count);
+}
+
+void requireWritable(const std::string& path) {
+  std::string target;
+  if (!S_ISREG(modeToReplace(path, target))) return;
+  std::error_code ignored;
+  std::filesystem::path directory = directoryOf(target);
+  while (!std::filesystem::exists(directory, ignored) && directory.has_relative_path())
+    directory = directory.has_parent_path() ? directory.parent_path() : ".";
+  if (!std::filesystem::is_directory(directory, ignored)) fail(directory, "files cannot lie there", ENOTDIR);
+  if (::access(directory.c_str(), W_OK) != 0) fail(directory, "nothing can be written there", errno);
 }
 
 void makeDirectoriesOf(const std::string& path) {

@@ -28,6 +28,9 @@ void writeAll(int descriptor, const std::string& name, const void* bytes, std::s
 /// Makes the directories that `path` lies in. Throws OutputError.
 void makeDirectoriesOf(const std::string& path);
 
+/// Throws OutputError where writeFileWhole(path), after makeDirectoriesOf(path), is sure to fail; writes nothing.
+void requireWritable(const std::string& path);
+
 /// Removes the temporary files of writes in progress and holds all further ones back for good: for a process
 /// that is about to end on a signal, from a thread of its own.
 void abandonWrites();

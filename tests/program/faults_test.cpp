@@ -53,8 +53,8 @@ TEST_F(Faults, OfUsage) {
   expect({"render"}, 2, "name one with -o");
   expect({"render", "-o", frame, "--tolerence", "1"}, 2, "did you mean --tolerance?");
   expect({"render", "-o", frame, "--method", "patchs"}, 2, "did you mean patches?");
-  expect({"render", "-o", frame, "--stats", frame}, 2, "file of another result");
-  expect({"render", "-o", frame, "--manifest", frame}, 2, "file of the frame");
+  expect({"render", "-o", frame, "--stats", frame}, 2, "file of a frame, a.png");
+  expect({"render", "-o", frame, "--manifest", frame}, 2, "file of a frame, a.png");
   expect({"render", "-o", frame, "--size", "0x10"}, 2, "1 to 16384");
   expect({"render", "-o", frame, "--size", "99999x99999"}, 2, "1 to 16384");
   expect({"render", "-o", frame, "--size", "tall"}, 2, "WIDTHxHEIGHT");
@@ -78,6 +78,35 @@ TEST_F(Faults, OfUsage) {
   expect({"render", "-o", frame, "--fps", "10"}, 2, "--animation");
   expect({"render", "-o", frame, "--threads", "0"}, 2, "1 to 1024");
   EXPECT_TRUE(names("").empty());
+}
+
+TEST_F(Faults, OfValuesThatAreEmpty) {
+  expect({"render", "builtin:cone-70", "--stats=", "--hash"}, 2, "--stats= has no value");
+  expect({"render", "builtin:cone-70", "-o=", "--quiet"}, 2, "-o= has no value");
+  expect({"render", "builtin:cone-70", "--eye", "5,0,0", "--ortho", "fit", "-o", "a.png"}, 2, "--ortho fit");
+  EXPECT_TRUE(names("").empty());
+}
+
+TEST_F(Faults, OfResultsThatWouldReplaceEachOther) {
+  const Words frames = {"render", "builtin:cone-70", "--size", "20x20", "--turntable", "3", "-o", "%d.png"};
+  expect(frames + Words{"--manifest", "./2.png"}, 2, "--manifest names the file of a frame, 2.png");
+  expect(frames + Words{"--stats", path("3.png")}, 2, "--stats names the file of a frame, 3.png");
+  expect(frames + Words{"--aov", "id", "--manifest", "1.id.png"}, 2, "a frame, 1.id.png");
+  expect(frames + Words{"--manifest", "./a.json", "--stats", "a.json"}, 2, "the file of the manifest");
+  EXPECT_TRUE(names("").empty());
+  EXPECT_EQ(limn(frames + Words{"--manifest", "4.png"}).status, 0);
+}
+
+TEST_F(Faults, OfOutputInADryRun) {
+  const Words frame = {"render", "builtin:cone-70", "--size", "20x20", "--dry-run", "-o"};
+  write("file", "");
+  std::filesystem::create_directories(path("folder"));
+  expect(frame + Words{"folder"}, 4, "is a directory");
+  expect(frame + Words{"file/a.png"}, 4, "files cannot lie there");
+  expect(frame + Words{"a.png", "--stats", "folder"}, 4, "is a directory");
+  expect(frame + Words{"a.png", "--manifest", "folder"}, 4, "is a directory");
+  EXPECT_EQ(limn(frame + Words{"new/deep/a.png"}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(path("new")));
 }
 
 TEST_F(Faults, OfACameraInOneFrame) {
