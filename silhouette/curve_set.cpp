@@ -15,6 +15,8 @@ namespace limn::silhouette {
 namespace {
 
 constexpr std::size_t kItemsPerBlock = 4096;
+constexpr float kFacingNone = -0.5f;  // of a face's normal and the mean of those at an edge: their product
+constexpr float kFacingFull = -0.2f;
 
 // Upper bound of CurveError::bend where a unit measures a pixel.
 float bendOf(const CurveOffsets& d) {
@@ -33,6 +35,7 @@ void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const FittedC
   } else {
     placeFittedCurves(mesh, topology, fitted, crew, curves, centers);
   }
+  computeFaceNormals(mesh, topology, crew, faceNormals);
   vertices.resize(edges);
   links.resize(edges);
   ownTrust_.resize(edges);
@@ -41,12 +44,23 @@ void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const FittedC
     for (std::size_t e = begin; e < end; ++e) linkEdge(e, mesh, topology, parameters);
   });
   trustBridges(topology, crew);
-  computeFaceNormals(mesh, topology, crew, faceNormals);
   runs.resize((edges + EdgeRun::kEdges - 1) / EdgeRun::kEdges);
   crew.forBlocks(runs.size(), kItemsPerBlock / EdgeRun::kEdges, [&](std::size_t begin, std::size_t end) {
     for (std::size_t r = begin; r < end; ++r) boundRun(r, mesh);
   });
   spread(mesh, crew);
+}
+
+// 0 to 1: whether one of an edge's faces at least faces the way that the normals at the edge's ends say. What lies in front of
+// a contour and what behind it, and whether it is concave, are questions to the normals; where all faces answer otherwise the
+// mesh stays flat.
+float CurveSet::facingOf(std::size_t e, const Mesh& mesh, const Edge& edge) const {
+  float most = -1.0f;
+  for (std::size_t face = 0; face < (edge.boundary ? 1u : 2u); ++face) {
+    const glm::vec3 normals = mesh.normals[vertices[e][face][0]] + mesh.normals[vertices[e][face][1]];
+    most = std::max(most, glm::dot(normals, faceNormals[edge.faces[face].triangle]));
+  }
+  return smoothStep(kFacingNone, kFacingFull, 0.5f * most);
 }
 
 void CurveSet::linkEdge(std::size_t e, const Mesh& mesh, const Topology& topology,
@@ -55,7 +69,10 @@ void CurveSet::linkEdge(std::size_t e, const Mesh& mesh, const Topology& topolog
   vertices[e] = edgeVertices(mesh, edge);
   if ((edge.isFeature() && !parameters.features) || (edge.boundary && !parameters.boundaries)) curves[e] = {};
   const bool doubtful = centers.empty() && parameters.robust && !edge.isFeature() && !edge.nonManifold;
+  const float facing = doubtful ? facingOf(e, mesh, edge) : 1.0f;
+  curves[e] = {facing * curves[e][0], facing * curves[e][1]};
   ownTrust_[e] = doubtful ? robust_.factors(edge) : std::array{1.0f, 1.0f};
+  for (float& trusted : ownTrust_[e]) trusted *= facing;
   const bool bends = curves[e] != CurveOffsets{}, smooth = !edge.isFeature() && !edge.boundary;
   const std::uint32_t face = edge.faces[0].triangle;
   EdgeLink& link = links[e];

@@ -92,6 +92,7 @@ struct CurveSet {
 
  private:
   void linkEdge(std::size_t e, const Mesh& mesh, const Topology& topology, const Parameters& parameters);
+  float facingOf(std::size_t e, const Mesh& mesh, const Edge& edge) const;
   void trustBridges(const Topology& topology, const Crew& crew);
   float trustAround(std::size_t point, const Topology& topology) const;
   bool isBelievedAround(std::size_t e, const Topology& topology) const;

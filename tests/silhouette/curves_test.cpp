@@ -128,6 +128,21 @@ TEST(Curves, NewVerticesStayNearTheirTriangle) {
 }
 
 // Shading on new vertices is what it is on the flat triangle: linear between the corners, whatever the position.
+// Every question in front or behind, concave or convex, would be answered the wrong way round.
+TEST(Curves, NormalsThatPointInwardsLeaveTheMeshFlat) {
+  for (Shape shape : {icosphere(2), torus(24, 12)}) {
+    for (vec3& normal : shape.normals) normal = -normal;
+    const Topology topology(shape.mesh());
+    Workers workers(1);
+    Refiner refiner(shape.mesh(), topology, workers);
+    RefinedStream stream;
+    for (const View& view : someViews(4.0f)) {
+      refiner.refine(view, curves(), stream);
+      EXPECT_TRUE(stream.indices.empty()) << shape.name;
+    }
+  }
+}
+
 TEST(Curves, NormalsAreLinear) {
   const Shape shape = shaken(torus(16, 8), 9);
   const Topology topology(shape.mesh());
