@@ -67,17 +67,26 @@ class MeshReader {
 
   /// The texture coordinates that the base colour wants, or else the first texture that the material has.
   int texcoordSet(const tinygltf::Primitive& primitive) const {
-    if (primitive.material < 0) return 0;
+    if (!hasTexture(primitive)) return 0;
     const tinygltf::Material& material =
         document_.model.materials[static_cast<std::size_t>(primitive.material)];
     const auto& base = material.pbrMetallicRoughness.baseColorTexture;
     if (base.index >= 0) return texcoordSetOf(base);
     if (material.normalTexture.index >= 0) return texcoordSetOf(material.normalTexture);
-    return material.emissiveTexture.index >= 0 ? texcoordSetOf(material.emissiveTexture) : 0;
+    return texcoordSetOf(material.emissiveTexture);
+  }
+
+  bool hasTexture(const tinygltf::Primitive& primitive) const {
+    if (primitive.material < 0) return false;
+    const tinygltf::Material& material =
+        document_.model.materials[static_cast<std::size_t>(primitive.material)];
+    return material.pbrMetallicRoughness.baseColorTexture.index >= 0 || material.normalTexture.index >= 0 ||
+           material.emissiveTexture.index >= 0;
   }
 
   void append(PrimitiveArrays&& arrays, const tinygltf::Primitive& source) {
     if (arrays.indices.empty()) return;
+    if (arrays.texcoords.empty() && hasTexture(source)) ++report_.withoutTexcoords;
     const std::size_t before = mesh_.positions.size(), added = arrays.positions.size();
     if (before + added > std::numeric_limits<std::int32_t>::max()) {
       document_.refuse(jsonPointer("meshes", index_), "has more than 2147483647 vertices; split it");
@@ -271,6 +280,8 @@ class MeshReader {
     tell(report_.pointsAndLines, " primitives of points or lines were left out.");
     tell(report_.withoutPositions, " primitives without positions were left out.");
     tell(report_.cutShort, " primitives end within a triangle.");
+    tell(report_.withoutTexcoords,
+         " primitives have a texture but no coordinates for it; they show its corner alone.");
     tell(report_.unnormalizedWeights,
          " vertices have joint weights that do not add up to 1; they were scaled.");
     tell(report_.withoutWeights, " vertices have no joint weights; they follow the first joint.");

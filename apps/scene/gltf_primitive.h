@@ -28,8 +28,8 @@ struct PrimitiveArrays {
 
 /// What was mended or passed over in the primitives of a mesh, for one notice each.
 struct PrimitiveReport {
-  std::size_t pointsAndLines = 0, withoutPositions = 0, cutShort = 0, unnormalizedWeights = 0,
-              withoutWeights = 0;
+  std::size_t pointsAndLines = 0, withoutPositions = 0, cutShort = 0, withoutTexcoords = 0,
+              unnormalizedWeights = 0, withoutWeights = 0;
 };
 
 /// Reads primitive `primitive` of mesh `mesh` with the texture coordinates of set `texcoordSet`. Empty where

@@ -187,6 +187,14 @@ TEST(GltfTexture, LargePicturesInSmallFilesAreReadUpToTheBudget) {
             std::string::npos);
 }
 
+TEST(GltfTexture, WithoutCoordinatesIsSaid) {
+  const Scene scene = textured(smallPng({0, 0, 0, 255}), kTextured).load();
+  ASSERT_EQ(scene.notices.size(), 1u);
+  EXPECT_NE(scene.notices[0].find("Mesh 0: 1 primitives have a texture but no coordinates"),
+            std::string::npos);
+  EXPECT_TRUE(textured(smallPng({0, 0, 0, 255}), json::object()).load().notices.empty());
+}
+
 TEST(GltfTexture, SamplersAndTexcoordSets) {
   json material = kTextured;
   material["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 1;
