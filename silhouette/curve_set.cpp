@@ -30,7 +30,8 @@ void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const FittedC
                        const Parameters& parameters, const Crew& crew) {
   const std::size_t edges = topology.edges().size();
   if (fitted.empty()) {
-    computeEdgeCurves(mesh, topology, {Tangents::kGeodesicArc, parameters.robust}, crew, robust_, curves);
+    computeEdgeCurves(mesh, topology, {Tangents::kGeodesicArc, false}, crew, robust_, curves);
+    if (parameters.robust) robust_.prepare(mesh, topology, crew);
     computeFeatureCurves(mesh, topology, crew, curves);
   } else {
     placeFittedCurves(mesh, topology, fitted, crew, curves, centers);
@@ -51,6 +52,12 @@ void CurveSet::prepare(const Mesh& mesh, const Topology& topology, const FittedC
   spread(mesh, crew);
 }
 
+void CurveSet::dropScaffold() {
+  robust_ = {};
+  ownTrust_ = {};
+  pointTrust_ = {};
+}
+
 // 0 to 1: whether one of an edge's faces at least faces the way that the normals at the edge's ends say. What lies in front of
 // a contour and what behind it, and whether it is concave, are questions to the normals; where all faces answer otherwise the
 // mesh stays flat.
@@ -68,11 +75,15 @@ void CurveSet::linkEdge(std::size_t e, const Mesh& mesh, const Topology& topolog
   const Edge& edge = topology.edges()[e];
   vertices[e] = edgeVertices(mesh, edge);
   if ((edge.isFeature() && !parameters.features) || (edge.boundary && !parameters.boundaries)) curves[e] = {};
-  const bool doubtful = centers.empty() && parameters.robust && !edge.isFeature() && !edge.nonManifold;
-  const float facing = doubtful ? facingOf(e, mesh, edge) : 1.0f;
-  curves[e] = {facing * curves[e][0], facing * curves[e][1]};
-  ownTrust_[e] = doubtful ? robust_.factors(edge) : std::array{1.0f, 1.0f};
-  for (float& trusted : ownTrust_[e]) trusted *= facing;
+  ownTrust_[e] = {1.0f, 1.0f};
+  if (centers.empty() && parameters.robust && !edge.isFeature() && !edge.nonManifold) {
+    ownTrust_[e] = robust_.factors(edge);
+    const float facing = facingOf(e, mesh, edge);
+    for (std::size_t k = 0; k < 2; ++k) {
+      ownTrust_[e][k] *= facing;
+      curves[e][k] *= ownTrust_[e][k];
+    }
+  }
   const bool bends = curves[e] != CurveOffsets{}, smooth = !edge.isFeature() && !edge.boundary;
   const std::uint32_t face = edge.faces[0].triangle;
   EdgeLink& link = links[e];

@@ -90,6 +90,9 @@ struct CurveSet {
   void prepare(const Mesh& mesh, const Topology& topology, const FittedCurves& fitted,
                const Parameters& parameters, const Crew& crew);
 
+  /// Gives back the memory that only prepare() needs; a later one allocates it anew.
+  void dropScaffold();
+
  private:
   void linkEdge(std::size_t e, const Mesh& mesh, const Topology& topology, const Parameters& parameters);
   float facingOf(std::size_t e, const Mesh& mesh, const Edge& edge) const;

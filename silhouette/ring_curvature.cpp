@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
 
 namespace limn::silhouette {
 namespace {
@@ -13,22 +12,27 @@ using glm::vec3;
 constexpr float kShortest = 1e-6f;  // in mean edges: shorter ones tell of roundings
 constexpr float kSteepest = 1e-3f;  // share of its length that an edge has in the plane at least
 constexpr double kFlatness = 0.02;  // how much the form is drawn to 0
+constexpr std::size_t kPointsPerBlock = 4096;
 
-// The unit direction of e in the plane, in a frame of the plane's own; zero where e stands on it.
-glm::vec2 directionOf(const vec3& e, const vec3& up) {
+}  // namespace
+
+RingCurvature::Frame RingCurvature::frameOf(const vec3& up) {
   const vec3 across = std::fabs(up.x) < std::fabs(up.y) ? vec3(0.0f, -up.z, up.y) : vec3(up.z, 0.0f, -up.x);
   const float across2 = dot(across, across);
   if (!(across2 > 0.0f)) return {};
-  const vec3 first = across / std::sqrt(across2), second = glm::cross(up, first) / std::sqrt(dot(up, up));
-  const glm::vec2 d(dot(e, first), dot(e, second));
+  const vec3 u = across / std::sqrt(across2);
+  return {u, glm::cross(up, u) / std::sqrt(dot(up, up))};
+}
+
+// The unit direction of e in the plane; zero where e stands on it.
+glm::vec2 RingCurvature::directionOf(const vec3& e, const Frame& frame) {
+  const glm::vec2 d(dot(e, frame.u), dot(e, frame.v));
   const float length2 = dot(d, d);
   return length2 > kSteepest * kSteepest * dot(e, e) ? d / std::sqrt(length2) : glm::vec2(0.0f);
 }
 
-}  // namespace
-
 void RingCurvature::prepare(const Mesh& mesh, const Topology& topology, const std::vector<vec3>& ups,
-                            const std::vector<std::uint8_t>& wanted) {
+                            const std::vector<std::uint8_t>& wanted, const Crew& crew) {
   const auto vectorOf = [&](const Edge& edge, const std::array<std::uint32_t, 2>& ends) {
     return edge.boundary ? vec3(0.0f) : mesh.positions[ends[1]] - mesh.positions[ends[0]];
   };
@@ -37,19 +41,25 @@ void RingCurvature::prepare(const Mesh& mesh, const Topology& topology, const st
     length += glm::length(glm::dvec3(vectorOf(edge, edgeVertices(mesh, edge)[0])));
   scale_ = length > 0.0 ? static_cast<float>(static_cast<double>(topology.edges().size()) / length) : 0.0f;
 
+  frames_.resize(topology.pointCount());
+  crew.forBlocks(frames_.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) frames_[p] = frameOf(ups[p]);
+  });
   sums_.assign(topology.pointCount(), {});
   for (const Edge& edge : topology.edges()) {
     const std::array<std::uint32_t, 2> ends = edgeVertices(mesh, edge)[0];
     const vec3 e = scale_ * vectorOf(edge, ends), difference = mesh.normals[ends[1]] - mesh.normals[ends[0]];
     for (const std::uint32_t point : edge.point)
-      if (wanted[point] != 0) add(sums_[point], ups[point], e, difference);
+      if (wanted[point] != 0) add(sums_[point], frames_[point], e, difference);
   }
-  for (Sums& sums : sums_) solve(sums);
+  crew.forBlocks(sums_.size(), kPointsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) solve(sums_[p]);
+  });
 }
 
-void RingCurvature::add(Sums& sums, const vec3& up, const vec3& e, const vec3& difference) const {
+void RingCurvature::add(Sums& sums, const Frame& frame, const vec3& e, const vec3& difference) {
   const float length2 = dot(e, e);
-  const glm::vec2 d = directionOf(e, up);
+  const glm::vec2 d = directionOf(e, frame);
   if (!(length2 > kShortest * kShortest) || d == glm::vec2(0.0f)) return;
   const float weight = 1.0f / length2, curvature = dot(difference, e) / length2;
   const float x = d.x * d.x, y = 2.0f * d.x * d.y, z = d.y * d.y;
@@ -76,10 +86,10 @@ void RingCurvature::solve(Sums& sums) {
   sums[2] = static_cast<float>((r * f + t * g + w * h) / determinant);
 }
 
-float RingCurvature::turn(std::uint32_t point, const vec3& up, const vec3& e) const {
+float RingCurvature::turn(std::uint32_t point, const vec3& e) const {
   const Sums& form = sums_[point];
   const vec3 scaled = scale_ * e;
-  const glm::vec2 d = directionOf(scaled, up);
+  const glm::vec2 d = directionOf(scaled, frames_[point]);
   const float curvature = d.x * d.x * form[0] + 2.0f * d.x * d.y * form[1] + d.y * d.y * form[2];
   return std::fabs(curvature) * glm::length(scaled);
 }

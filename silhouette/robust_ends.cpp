@@ -32,7 +32,7 @@ constexpr float kEvidenceNone = 0.6f;
 constexpr float kEvidenceFull = 0.9f;
 constexpr float kRegular = 0.15f;  // of the tilts
 constexpr float kIrregular = 0.3f;
-constexpr std::size_t kEdgesPerBlock = 4096;
+constexpr std::size_t kItemsPerBlock = 4096;
 
 // The angle between two vectors within 7e-5 (Abramowitz & Stegun 4.4.45): a weight, not a measurement.
 float angleBetween(const vec3& a, const vec3& b) {
@@ -100,8 +100,15 @@ void RobustEnds::prepare(const Mesh& mesh, const Topology& topology, const Crew&
     ringNormals_[topology.points()[mesh.indices[side]]] +=
         angleBetween(next, before) * faceNormals_[side / 3];
   }
+  deviations_.resize(mesh.normals.size());
+  crew.forBlocks(deviations_.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const vec3 product = cross(mesh.normals[v], unit(ringNormals_[topology.points()[v]]));
+      deviations_[v] = std::sqrt(dot(product, product));
+    }
+  });
   findTrust(crew);
-  curvature_.prepare(mesh, topology, ringNormals_, isSmooth_);
+  curvature_.prepare(mesh, topology, ringNormals_, isSmooth_, crew);
 }
 
 // Sums by blocks of edges, joined in order. A vertex counts once for each of its edges.
@@ -110,9 +117,9 @@ void RobustEnds::findTrust(const Crew& crew) {
   isSmooth_.assign(topology_->pointCount(), 1);
   for (const Edge& edge : edges)
     if (edge.boundary || edge.isFeature()) isSmooth_[edge.point[0]] = isSmooth_[edge.point[1]] = 0;
-  evidence_.assign((edges.size() + kEdgesPerBlock - 1) / kEdgesPerBlock, {});
-  crew.forBlocks(edges.size(), kEdgesPerBlock, [&](std::size_t begin, std::size_t end) {
-    Evidence& sum = evidence_[begin / kEdgesPerBlock];
+  evidence_.assign((edges.size() + kItemsPerBlock - 1) / kItemsPerBlock, {});
+  crew.forBlocks(edges.size(), kItemsPerBlock, [&](std::size_t begin, std::size_t end) {
+    Evidence& sum = evidence_[begin / kItemsPerBlock];
     for (std::size_t e = begin; e < end; ++e) {
       const Edge& edge = edges[e];
       if (isSmooth_[edge.point[0]] == 0 || isSmooth_[edge.point[1]] == 0) continue;
@@ -121,7 +128,7 @@ void RobustEnds::findTrust(const Crew& crew) {
       const float hi = -dot(along, mesh_.normals[ends[0]]), hj = dot(along, mesh_.normals[ends[1]]);
       sum.differences += std::fabs(hi - hj);
       sum.tilts += std::fabs(hi + hj);
-      sum.deviations += deviation(ends[0]) + deviation(ends[1]);
+      sum.deviations += deviations_[ends[0]] + deviations_[ends[1]];
     }
   });
   Evidence all;
@@ -145,12 +152,6 @@ float RobustEnds::regularityOf(double differences, double tilts) {
 float RobustEnds::trustOf(float evidence) {
   return std::max(1.0f - smoothStep(kOwnFull, kOwnNone, evidence),
                   smoothStep(kEvidenceNone, kEvidenceFull, evidence));
-}
-
-// Sine of the angle between a vertex's normal and that of its ring of faces.
-float RobustEnds::deviation(std::uint32_t vertex) const {
-  const vec3 product = cross(mesh_.normals[vertex], unit(ringNormals_[topology_->points()[vertex]]));
-  return std::sqrt(dot(product, product));
 }
 
 // Where the butterfly scheme puts the edge's midpoint, less the midpoint. False where its stencil meets a
@@ -182,16 +183,14 @@ std::array<float, 2> RobustEnds::factors(const Edge& edge) const {
     return glm::mix(endLimit(kLimit, own, other), 1.0f, regularity_);
   };
 
-  const float deviating = std::min(0.5f * (deviation(ends[0]) + deviation(ends[1])), kDeviationMost);
+  const float deviating = std::min(0.5f * (deviations_[ends[0]] + deviations_[ends[1]]), kDeviationMost);
   const float onset = kTiltOnset + kOnsetPerDeviation * deviating;
   float common = 1.0f - smoothStep(onset, onset + kTiltWidth, std::max(std::fabs(hi), std::fabs(hj)));
 
   common *= trust_;
   if (!(common > 0.0f)) return {0.0f, 0.0f};
 
-  const auto turn = [&](std::size_t end) {
-    return curvature_.turn(edge.point[end], ringNormals_[edge.point[end]], e);
-  };
+  const auto turn = [&](std::size_t end) { return curvature_.turn(edge.point[end], e); };
   const float even = 0.5f * (turn(0) + turn(1));
   if (even > 0.0f) common *= smoothStep(0.0f, kTurnFull, std::fabs(hi + hj) / even);
 

@@ -80,13 +80,14 @@ class RobustEnds {
   struct Stencil;
   static float regularityOf(double differences, double tilts);
   void findTrust(const Crew& crew);
-  float deviation(std::uint32_t vertex) const;
   bool butterflyOffset(const Edge& edge, Stencil& stencil) const;
 
   Mesh mesh_;
   const Topology* topology_ = nullptr;
   std::vector<glm::vec3> faceNormals_;  // unit
   std::vector<glm::vec3> ringNormals_;  // per point: angle-weighted mean of the faces around it, not unit
+  std::vector<float>
+      deviations_;  // per vertex: sine of the angle between its normal and that of its ring of faces
   std::vector<std::uint8_t> isSmooth_;  // per point: no feature and no boundary around it
   RingCurvature curvature_;
   std::vector<Evidence> evidence_;  // per block of edges

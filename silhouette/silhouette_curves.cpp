@@ -54,6 +54,7 @@ class SilhouetteCurves final : public MethodState {
   void deform(const Mesh& mesh) override {
     mesh_ = mesh;
     isPrepared_ = false;
+    isRigid_ = false;
   }
 
   void prepare(const Parameters& parameters, const Crew& crew) override {
@@ -61,6 +62,7 @@ class SilhouetteCurves final : public MethodState {
     const Style style{wanted.robust, wanted.features, wanted.boundaries};
     if (isPrepared_ && style == style_) return;
     prepared_.prepare(mesh_, topology_, fitted_, wanted, crew);
+    if (isRigid_) prepared_.dropScaffold();
     style_ = style;
     isPrepared_ = true;
   }
@@ -114,7 +116,7 @@ class SilhouetteCurves final : public MethodState {
   std::vector<CurvesPass::Scratch> scratch_;
   CurveSet prepared_;
   Style style_;
-  bool isPrepared_ = false;
+  bool isPrepared_ = false, isRigid_ = true;
 };
 
 }  // namespace

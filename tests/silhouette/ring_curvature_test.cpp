@@ -16,15 +16,13 @@ using glm::vec3;
 struct Rings {
   explicit Rings(const Shape& shape) : mesh(shape.mesh()), topology(mesh), ups(topology.pointCount()) {
     for (std::size_t v = 0; v < mesh.normals.size(); ++v) ups[topology.points()[v]] = 3.0f * mesh.normals[v];
-    curvature.prepare(mesh, topology, ups, std::vector<std::uint8_t>(topology.pointCount(), 1));
+    curvature.prepare(mesh, topology, ups, std::vector<std::uint8_t>(topology.pointCount(), 1), Crew(0));
   }
   vec3 along(const Edge& edge) const {
     const std::array<std::uint32_t, 2> ends = edgeVertices(mesh, edge)[0];
     return mesh.positions[ends[1]] - mesh.positions[ends[0]];
   }
-  float turn(const Edge& edge, std::size_t end) const {
-    return curvature.turn(edge.point[end], ups[edge.point[end]], along(edge));
-  }
+  float turn(const Edge& edge, std::size_t end) const { return curvature.turn(edge.point[end], along(edge)); }
 
   Mesh mesh;
   Topology topology;
